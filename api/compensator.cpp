@@ -62,8 +62,8 @@ std::shared_ptr<const RateCompensator> compensator_of(
 }
 
 Compensator Compensator::read(const std::filesystem::path& file) {
-  return compensator_of_text(internal::read_text_file(file), file.string(),
-                             file.string());
+  return compensator_of_text(internal::read_compensator_text(file),
+                             file.string(), file.string());
 }
 
 Compensator Compensator::parse(const std::string& text,

@@ -134,14 +134,14 @@ void ValidationRequest::hash_recordings(bool keeps_inputs) {
 
 FittedCompensator ValidationRequest::read_compensator_of(
     const std::string& group, const fs::path& path) {
-  const std::string text = read_text_file(path);
+  const std::string text = read_compensator_text(path);
   add_file(group, path, text);
   return parse_compensator(text, path.string());
 }
 
 void ValidationRequest::read_baseline() {
   const fs::path& path = *options.baseline_result;
-  const std::string text = read_text_file(path);
+  const std::string text = read_json_text(path, "the result of a validation");
   earlier = parse_earlier_result(text, path.string());
   add_file("baseline_result", path, text);
 }

@@ -6,10 +6,11 @@
 #             sanitizers where bytes are parsed, memory is owned or threads run,
 #             with the assertions of Eigen and of the standard library everywhere
 #   threads   what the program does on several threads, thread sanitizer
+#   fuzz      every reader of files, a minute of changed inputs each
 #   tidy      clang-tidy on every source
 #   deep      the benchmarks, compiled; the tests marked `deep`: packages, the site
 #             of the pages, a browser, Slurm, Octave, an emulated Cortex-M4, more
-#             draws
+#             draws; a fault at every call on files
 #   packages  the Debian packages and the wheel in a bare Debian 12: installed,
 #             run, removed
 #   image     the container image on that Debian, built and run
@@ -19,7 +20,7 @@ set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
 # shellcheck source=scripts/ledger.sh
 source scripts/ledger.sh
-choose_parts address threads tidy deep packages image -- "$@"
+choose_parts address threads fuzz tidy deep packages image -- "$@"
 named=$#
 
 # script NAME COMMAND...: a step that is one script, whose last line is shown.
@@ -78,7 +79,7 @@ for entry in json.load(open("build/tidy/compile_commands.json")):
 }
 
 groups=(test)
-if wanted address || wanted threads; then groups+=(sanitizers); fi
+if wanted address || wanted threads || wanted fuzz; then groups+=(sanitizers); fi
 if wanted deep; then groups+=(deep); fi
 if wanted packages || wanted image; then groups+=(bare); fi
 scripts/setup.sh "${groups[@]}" || { broken set-up "set-up failed"; finish; exit; }
@@ -98,6 +99,10 @@ if wanted threads; then
     broken "build (tsan)" "no build with the sanitizer: see build/tsan.log"
   fi
 fi
+if wanted fuzz; then
+  readers=$(find tests/fuzz -name '*_fuzz.cpp' | wc -l)
+  script fuzz scripts/fuzz.sh $(((readers + $(nproc) - 1) / $(nproc)))
+fi
 wanted tidy && tidy
 # The benchmarks, too, which nothing else compiles.
 if wanted deep || wanted packages || wanted image; then
@@ -105,6 +110,8 @@ if wanted deep || wanted packages || wanted image; then
     if wanted deep; then
       unit_tests "deep unit tests" release --label-regex deep
       program_tests "deep tests of the program" release -n "$(nproc)" -m deep
+      BEAMGYRO_ALL_FAULTS=1 program_tests "faults at every call" release \
+        -n "$(nproc)" tests/program/fault_test.py
     fi
     if wanted packages || wanted image; then
       rm -rf build/packages

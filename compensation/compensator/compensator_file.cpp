@@ -263,15 +263,12 @@ FittedCompensator parse_compensator(const std::string& text,
   return read_root(JsonNode(json, name));
 }
 
+std::string read_compensator_text(const std::filesystem::path& file) {
+  return read_json_text(file, "a compensator");
+}
+
 FittedCompensator read_compensator(const std::filesystem::path& file) {
-  constexpr std::uintmax_t kLargest = std::uintmax_t{16} << 20;  // [bytes]
-  std::error_code unknown;
-  const std::uintmax_t size = std::filesystem::file_size(file, unknown);
-  if (!unknown && size > kLargest)
-    throw std::invalid_argument(fmt::format(
-        "{}: {} bytes; expected a compensator, which has at most {}",
-        file.string(), size, kLargest));
-  return parse_compensator(read_text_file(file), file.string());
+  return parse_compensator(read_compensator_text(file), file.string());
 }
 
 }  // namespace beamgyro::internal

@@ -23,7 +23,10 @@ std::string compensator_text(const FittedCompensator& compensator);
 FittedCompensator parse_compensator(const std::string& text,
                                     const std::string& name);
 
-/// Reads a compensator file. Throws as read_text_file() and
+/// Returns the text of a compensator file. Throws as read_json_text().
+std::string read_compensator_text(const std::filesystem::path& file);
+
+/// Reads a compensator file. Throws as read_compensator_text() and
 /// parse_compensator().
 FittedCompensator read_compensator(const std::filesystem::path& file);
 

@@ -9,9 +9,17 @@
 #include <limits>
 #include <stdexcept>
 
-namespace beamgyro::internal {
+#include "config/cut_text.h"
 
-void JsonNode::fail(const std::string& message) const {
+namespace beamgyro::internal {
+namespace {
+
+constexpr std::size_t kLongestMessage = 2000;  // bytes
+
+}  // namespace
+
+void JsonNode::fail(const std::string& text) const {
+  const std::string_view message = cut_text(text, kLongestMessage);
   throw std::invalid_argument(
       path_.empty() ? fmt::format("{}: {}", file_, message)
                     : fmt::format("{}: {}: {}", file_, path_, message));
@@ -148,9 +156,10 @@ nlohmann::ordered_json parse_json(std::string_view text,
   } catch (const nlohmann::json::exception& error) {
     const std::string what =
         error.what();  // "[json...] at line L, column C:.."
-    throw std::invalid_argument(fmt::format("{}: not a whole JSON file: {}",
-                                            file,
-                                            what.substr(what.find("] ") + 2)));
+    throw std::invalid_argument(
+        fmt::format("{}: not a whole JSON file: {}", file,
+                    cut_text(std::string_view(what).substr(what.find("] ") + 2),
+                             kLongestMessage)));
   }
 }
 

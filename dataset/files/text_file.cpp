@@ -40,4 +40,19 @@ std::string read_text_file(const std::filesystem::path& path) {
   return text;
 }
 
+std::string read_json_text(const std::filesystem::path& path,
+                           std::string_view kind) {
+  require_readable(path);
+  std::string text;
+  read_in_pieces(path, [&](std::string_view piece) {
+    text += piece;
+    if (text.size() > kLargestJson)
+      throw std::invalid_argument(
+          fmt::format("{}: more than {} bytes; expected {}, which has at most "
+                      "that",
+                      path.string(), kLargestJson, kind));
+  });
+  return text;
+}
+
 }  // namespace beamgyro::internal

@@ -3,14 +3,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <span>
-#include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "dataset/netcdf/hdf5_bytes.h"
+#include "dataset/netcdf/hdf5_header.h"
+#include "dataset/netcdf/hdf5_heap.h"
+#include "dataset/netcdf/hdf5_tree.h"
 #include "dataset/netcdf/hdf5_write.h"
 
 namespace beamgyro::internal {
@@ -30,6 +32,7 @@ struct DrivenFile {
   bool is_read_only = true;
   int failed_write = 0;  // errno of the first one
   haddr_t end_of_addresses = 0, size = 0;
+  ObjectHeaders headers{};
 };
 
 DrivenFile& driven(const H5FD_t* file) {
@@ -92,12 +95,16 @@ herr_t close_driven(H5FD_t* file) {
   return 0;
 }
 
-herr_t query_driven(const H5FD_t*, unsigned long* features) {
-  // The features of the library's own driver, so that files have the same
-  // layout.
-  *features = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA |
-              H5FD_FEAT_DATA_SIEVE | H5FD_FEAT_AGGREGATE_SMALLDATA |
-              H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;
+herr_t query_driven(const H5FD_t* file, unsigned long* features) {
+  constexpr unsigned long kAlways =
+      H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_DATA_SIEVE |
+      H5FD_FEAT_AGGREGATE_SMALLDATA | H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;
+  // Written files have the layout that the library's own driver gives them. In
+  // a file that is only read a damaged address crashes the accumulator of HDF5
+  // 1.10, and a damaged block of driver information takes 4 GiB.
+  const bool is_read = file != nullptr && driven(file).is_read_only;
+  *features = kAlways | (is_read ? H5FD_FEAT_IGNORE_DRVRINFO
+                                 : H5FD_FEAT_ACCUMULATE_METADATA);
   return 0;
 }
 
@@ -121,22 +128,40 @@ bool is_beyond(haddr_t place, std::size_t size) {
 /// Returns whether these are the first bytes of a global heap. HDF5 1.10 does
 /// not check it: damage there crashes or hangs the library.
 bool is_global_heap(std::span<const std::byte> bytes) {
-  constexpr std::string_view kHeapStart = "GCOL\x01";
-  return bytes.size() >= kHeapStart.size() &&
-         std::memcmp(bytes.data(), kHeapStart.data(), kHeapStart.size()) == 0;
+  return starts_with(bytes, "GCOL\x01");
 }
 
-herr_t read_driven(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t place,
-                   std::size_t size, void* buffer) {
-  if (is_beyond(place, size)) return -1;
-  const std::span bytes(static_cast<std::byte*>(buffer), size);
+/// Reads from a file that is not written, where no bytes beyond its end are
+/// made up.
+herr_t read_strictly(DrivenFile& from, H5FD_mem_t kind, haddr_t place,
+                     std::span<std::byte> bytes) {
+  const auto fill = [&from](haddr_t start, std::span<std::byte> part) {
+    return start <= from.size && part.size() <= from.size - start &&
+           from.file->read_at(start, part) == part.size();
+  };
+  bool is_sound = false;
   const herr_t status = guarded([&] {
-    const std::size_t there = driven(file).file->read_at(place, bytes);
-    std::ranges::fill(bytes.subspan(there), std::byte{0});
+    is_sound =
+        fill(place, bytes) && is_sound_heap(bytes) &&
+        (!is_tree(bytes) || is_sound_tree(bytes, from.size, fill)) &&
+        from.headers.are_sound(place, bytes, kind == H5FD_MEM_OHDR, fill);
   });
-  if (!driven(file).is_read_only || !is_global_heap(bytes)) return status;
+  if (status < 0 || !is_sound) return -1;
+  if (!is_global_heap(bytes)) return 0;
   met_global_heap = true;
   return -1;
+}
+
+herr_t read_driven(H5FD_t* file, H5FD_mem_t kind, hid_t, haddr_t place,
+                   std::size_t size, void* buffer) {
+  DrivenFile& from = driven(file);
+  const std::span bytes(static_cast<std::byte*>(buffer), size);
+  if (from.is_read_only) return read_strictly(from, kind, place, bytes);
+  if (is_beyond(place, size)) return -1;
+  return guarded([&] {
+    const std::size_t there = from.file->read_at(place, bytes);
+    std::ranges::fill(bytes.subspan(there), std::byte{0});
+  });
 }
 
 herr_t write_driven(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t place,

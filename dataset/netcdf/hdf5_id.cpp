@@ -2,6 +2,7 @@
 #include "dataset/netcdf/hdf5_id.h"
 
 #include <fmt/format.h>
+#include <pthread.h>
 
 #include <system_error>
 
@@ -32,7 +33,13 @@ bool is_true(htri_t answer, const std::string& question) {
 }
 
 std::mutex& QuietHdf5::mutex() {
-  static std::mutex one;
+  // Never destroyed: a fork may come after the end of main().
+  static auto& one = *new std::mutex;
+  // A child of fork() has one thread: it would wait for ever for another one
+  // that used HDF5, and would meet it half changed. So a fork waits.
+  static const int registered = pthread_atfork(
+      [] { one.lock(); }, [] { one.unlock(); }, [] { one.unlock(); });
+  static_cast<void>(registered);
   return one;
 }
 

@@ -140,7 +140,27 @@ class Compensator(Wrapper):
     def __reduce__(self) -> tuple[Any, ...]:
         if isinstance(self._native, _core.Compensator):
             return Compensator.parse, (self._native.text, self.name)
+        if isinstance(self._source["source"], (str, os.PathLike)):
+            return Compensator._unopened, (self._source,)
         return functools.partial(Compensator, **self._source), ()
+
+    @classmethod
+    def _unopened(cls, source: dict[str, Any]) -> Compensator:
+        """Return a library or a command that runs when it is first used, and
+        not when it is unpickled."""
+        made = cls.__new__(cls)
+        made._source = source
+        return made
+
+    def __getattr__(self, name: str) -> Any:
+        if name != "_native":
+            raise AttributeError(
+                f"{type(self).__name__!r} object has no attribute {name!r}")
+        source = self._source
+        self._native = _opened(source["source"], source["stall_s"],
+                               source["plugin_files"],
+                               source["require_isolation"])
+        return self._native
 
 
 def _opened(source: Path, stall_s: float, plugin_files: list[str],

@@ -130,7 +130,7 @@ def recording_of(dataset: xr.Dataset, argument: str = "recording", *,
     status = (_arguments.status(dataset.variables["status"].values)
               if "status" in dataset.variables
               else np.zeros(size, dtype=np.uint8))
-    recording = _core.Recording(time, status)
+    recording = _core.new_recording(time, status)
     for name, variable in dataset.variables.items():
         if name in ("time", "status") or variable.ndim == 0:
             continue  # a coordinate without a dimension, as isel() leaves it

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "include/beamgyro/compensator.h"
 #include "include/beamgyro/recording.h"
 
 namespace beamgyro::python {
@@ -29,8 +30,32 @@ inline std::vector<double> values_of(const Doubles& values) {
 
 using SharedRecording = std::shared_ptr<Recording>;
 
+/// Takes a shared object from Python, and no None.
+template <class Object>
+class SomeCaster
+    : public py::detail::copyable_holder_caster<Object,
+                                                std::shared_ptr<Object>> {
+ public:
+  bool load(py::handle source, bool convert) {
+    return !source.is_none() &&
+           py::detail::copyable_holder_caster<
+               Object, std::shared_ptr<Object>>::load(source, convert);
+  }
+};
+
 /// Returns (recording, warnings).
 py::tuple with_warnings(Recording&& recording,
                         const std::vector<std::string>& warnings);
 
 }  // namespace beamgyro::python
+
+namespace pybind11::detail {
+
+template <>
+class type_caster<std::shared_ptr<beamgyro::Recording>>
+    : public beamgyro::python::SomeCaster<beamgyro::Recording> {};
+template <>
+class type_caster<std::shared_ptr<beamgyro::RateCompensator>>
+    : public beamgyro::python::SomeCaster<beamgyro::RateCompensator> {};
+
+}  // namespace pybind11::detail

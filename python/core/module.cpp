@@ -46,6 +46,18 @@ void translate(std::exception_ptr thrown) {
   }
 }
 
+/// Keeps Python from making objects of the classes of `core`, which only its
+/// functions return: one without a value inside would crash when it is used.
+void refuse_new_objects(const py::module_& core) {
+  const py::cpp_function refuse(
+      [](const py::args&, const py::kwargs&) -> py::object {
+        throw py::type_error(
+            "has no constructor; expected a call of the package beamgyro");
+      });
+  for (const auto& [name, value] : core.attr("__dict__").cast<py::dict>())
+    if (py::isinstance<py::type>(value)) value.attr("__new__") = refuse;
+}
+
 }  // namespace
 }  // namespace beamgyro::python
 
@@ -58,6 +70,7 @@ PYBIND11_MODULE(_core, core) {
   python::bind_simulation(core);
   python::bind_compensation(core);
   python::bind_analysis(core);
+  python::refuse_new_objects(core);
   core.def("end_running_work", &python::end_running_work);
   pybind11::module_::import("atexit").attr("register")(
       core.attr("end_running_work"));

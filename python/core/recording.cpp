@@ -208,8 +208,7 @@ py::tuple with_warnings(Recording&& recording,
 void bind_recording(py::module_& core) {
   core.def("unit_of", &unit_of);
   py::class_<Recording, SharedRecording> recording(core, "Recording");
-  recording.def(py::init(&new_recording))
-      .def("add", &add_column)
+  recording.def("add", &add_column)
       .def("require_sound", &require_sound)
       .def("arrays", &arrays_of)
       .def("variable_attributes", &variable_attributes)
@@ -228,6 +227,7 @@ void bind_recording(py::module_& core) {
         {"overrides_text", &Recording::overrides_text}})
     recording.def_readwrite(name, member);
   recording.def_readwrite("seed", &Recording::seed);
+  core.def("new_recording", &new_recording);
   core.def("read_recording", &read);
 }
 

@@ -6,16 +6,7 @@ import json
 import os
 import shutil
 
-from sets import Set
-
-
-def line(record):
-    """One of a manifest, with its checksum."""
-    record.pop("check", None)
-    body = json.dumps(record, separators=(",", ":"),
-                      ensure_ascii=False).encode()[:-1]
-    check = hashlib.sha256(body).hexdigest()[:16]
-    return body + b',"check":"' + check.encode() + b'"}\n'
+from sets import Set, manifest_line
 
 
 class HostileSet(Set):
@@ -47,7 +38,7 @@ class HostileSet(Set):
                     record["sha256_before"] = hashlib.sha256(text).hexdigest()
                 if "filetype" in record:
                     self.head = record
-                text += line(record)
+                text += manifest_line(record)
             path.write_bytes(text)
 
     def forge_anew(self, change):

@@ -16,7 +16,8 @@ import pytest
 
 from export_firmware_test import CORE, EMULATOR, LINK, missing
 from exported import MODELS, ExportTest
-from program import PATIENCE, PROGRAM, ROOT, ProgramTest, ramp, said, without_landlock
+from program import (PATIENCE, PROGRAM, ROOT, ProgramTest, processes, ramp, said,
+                     without_landlock)
 
 EXAMPLES = ROOT / "examples/plugins"
 PYTHON = f"'{sys.executable}'"
@@ -27,18 +28,6 @@ QEMU = (f"cmd:{EMULATOR} -M mps2-an386 -display none -serial none "
 
 # Power is lost for a while, so that a plug-in begins twice.
 TWICE = ramp(seconds=600, rate_Hz=5) + "[power]\non_s = [0, 320]\noff_s = [280]\n"
-
-
-def processes(word):
-    """Ids of processes whose command line contains the word."""
-    found = []
-    for entry in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
-        try:
-            if word.encode() in entry.read_bytes():
-                found.append(int(entry.parent.name))
-        except OSError:
-            pass
-    return found
 
 
 class Plugins(ProgramTest):

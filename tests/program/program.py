@@ -85,6 +85,18 @@ def limits(**most):
         for metric, value in most.items())
 
 
+def processes(word):
+    """Ids of processes whose command line contains the word."""
+    found = []
+    for entry in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            if word.encode() in entry.read_bytes():
+                found.append(int(entry.parent.name))
+        except OSError:
+            pass
+    return found
+
+
 def class_folder(case, prefix=""):
     """A directory that is there while the tests of a class run."""
     return pathlib.Path(case.enterClassContext(

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What the tests of sets share: a campaign of seven devices in two runs."""
 
+import hashlib
 import json
 import sys
 
@@ -53,6 +54,15 @@ def write_campaign(test, devices=7, seconds=60, rate_Hz=2, **ambients):
                    .replace("= 2\n", f"= {rate_Hz}\n"))
     test.write("campaign.toml",
                CAMPAIGN.replace("devices = 7", f"devices = {devices}"))
+
+
+def manifest_line(record):
+    """One of a manifest, with its checksum."""
+    record.pop("check", None)
+    body = json.dumps(record, separators=(",", ":"),
+                      ensure_ascii=False).encode()[:-1]
+    check = hashlib.sha256(body).hexdigest()[:16]
+    return body + b',"check":"' + check.encode() + b'"}\n'
 
 
 class Set(ProgramTest):

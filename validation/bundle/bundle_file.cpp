@@ -72,7 +72,8 @@ std::string listed_name(const Bundle& bundle, const JsonNode& value) {
 
 Bundle read_bundle(const fs::path& directory) {
   const std::string place = (directory / kBundleFile).string();
-  const Json json = parse_json(read_text_file(place), place);
+  const Json json =
+      parse_json(read_json_text(place, "that of a bundle"), place);
   const JsonNode root(json, place);
   if (root.at("filetype").text() != kBundleFiletype)
     root.at("filetype")

@@ -16,6 +16,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <initializer_list>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
@@ -23,6 +24,7 @@
 
 #include "config/cut_text.h"
 #include "validation/external/answering.h"
+#include "validation/external/process_keeper.h"
 
 extern char** environ;
 
@@ -34,11 +36,13 @@ using std::chrono::milliseconds;
 constexpr int kPipeBytes = 1 << 20;
 constexpr std::size_t kLongestLine = 200;  // bytes
 constexpr pid_t kFreeSlot = 0, kTakenSlot = -1;
+constexpr double kPatience = 30.0;  // [s]
 
-// Leaders of process groups, where a signal handler may read them.
+// Keepers, and leaders of process groups without one, where a signal handler
+// may read them.
 static_assert(std::atomic<pid_t>::is_always_lock_free);
 std::array<std::atomic<pid_t>, 256> live_groups;
-std::array<std::array<char, 256>, 256> live_folders;  // cut off where longer
+std::array<std::atomic<bool>, 256> is_keeper;
 
 // With more processes than slots it waits.
 std::size_t take_process_slot() {
@@ -59,10 +63,19 @@ std::string made_folder() {
   return name;
 }
 
+// Kills the processes that a keeper keeps, or those of a group.
+void end_processes(pid_t id, bool is_kept) noexcept {
+  if (!is_kept) {
+    ::kill(-id, SIGKILL);
+    return;
+  }
+  ::kill(id, SIGTERM);
+  ::kill(id, SIGCONT);  // if foreign code has stopped it
+}
+
 void free_process_slot(std::size_t slot, const std::string& folder) {
   std::error_code ignored;
   if (!folder.empty()) std::filesystem::remove_all(folder, ignored);
-  live_folders[slot] = {};
   live_groups[slot] = kFreeSlot;
 }
 
@@ -117,19 +130,19 @@ class SpawnAttributes {
   posix_spawnattr_t attributes_;
 };
 
-class StandardFiles {
+// The first descriptors of a new process; it has no others.
+class FirstFiles {
  public:
-  StandardFiles(const OpenFile& in, const OpenFile& out, const OpenFile& err) {
+  explicit FirstFiles(std::initializer_list<const OpenFile*> files) {
     posix_spawn_file_actions_init(&actions_);
-    int standard = STDIN_FILENO;
-    for (const OpenFile* file : {&in, &out, &err})
-      posix_spawn_file_actions_adddup2(&actions_, file->descriptor(),
-                                       standard++);
-    posix_spawn_file_actions_addclosefrom_np(&actions_, standard);
+    int first = STDIN_FILENO;
+    for (const OpenFile* file : files)
+      posix_spawn_file_actions_adddup2(&actions_, file->descriptor(), first++);
+    posix_spawn_file_actions_addclosefrom_np(&actions_, first);
   }
-  ~StandardFiles() { posix_spawn_file_actions_destroy(&actions_); }
-  StandardFiles(const StandardFiles&) = delete;
-  StandardFiles& operator=(const StandardFiles&) = delete;
+  ~FirstFiles() { posix_spawn_file_actions_destroy(&actions_); }
+  FirstFiles(const FirstFiles&) = delete;
+  FirstFiles& operator=(const FirstFiles&) = delete;
   const posix_spawn_file_actions_t* get() const { return &actions_; }
 
  private:
@@ -159,18 +172,23 @@ std::string last_words(const std::string& text) {
 
 ChildProcess::ChildProcess(const ProcessStart& start) try {
   Pipe in = make_pipe(), out = make_pipe(), error = make_pipe();
+  Pipe life = make_pipe();
   const SpawnAttributes attributes;
-  const StandardFiles files(in.reads, out.writes, error.writes);
+  static_assert(kLifeDescriptor == STDERR_FILENO + 1);
+  const FirstFiles files =
+      start.is_kept
+          ? FirstFiles{&in.reads, &out.writes, &error.writes, &life.reads}
+          : FirstFiles{&in.reads, &out.writes, &error.writes};
   std::vector<char*> arguments;
   for (const std::string& word : start.words)
     arguments.push_back(const_cast<char*>(word.c_str()));
-  if (start.has_folder) {
+  if (start.is_kept) {
     folder_ = made_folder();
     arguments.push_back(folder_.data());
   }
   arguments.push_back(nullptr);
   slot_ = take_process_slot();
-  folder_.copy(live_folders[slot_].data(), live_folders[slot_].size() - 1);
+  is_keeper[slot_] = start.is_kept;
   const int failed =
       ::posix_spawnp(&id_, arguments[0], files.get(), attributes.get(),
                      arguments.data(), environ);
@@ -181,6 +199,7 @@ ChildProcess::ChildProcess(const ProcessStart& start) try {
   if (failed != 0)
     throw std::system_error(failed, std::generic_category(), "a process");
   input_.emplace(std::move(in.writes));
+  if (start.is_kept) life_.emplace(std::move(life.writes));
   output_.emplace(std::move(out.reads));
   error_.emplace(std::move(error.reads));
   for (auto* file : {&input_, &output_, &error_}) make_nonblocking(**file);
@@ -209,14 +228,17 @@ std::optional<ProcessEnd> ChildProcess::wait(double seconds) {
 }
 
 void ChildProcess::kill() {
-  // The group has this number as long as its leader is not reaped.
-  if (!killed_) ::kill(-id_, SIGKILL);
+  // Both have this number as long as the process is not reaped.
+  if (!killed_) end_processes(id_, life_.has_value());
+  life_.reset();
   killed_ = true;
 }
 
 ChildProcess::~ChildProcess() {
   kill();
   live_groups[slot_] = kTakenSlot;
+  // A keeper that foreign code has stopped or ends too slowly.
+  if (is_keeper[slot_] && !wait(kPatience)) ::kill(id_, SIGKILL);
   while (::waitpid(id_, nullptr, 0) < 0 && errno == EINTR) {
   }
   free_process_slot(slot_, folder_);
@@ -260,10 +282,8 @@ std::size_t write_available(std::optional<OpenFile>& pipe,
 
 void kill_child_processes() noexcept {
   for (std::size_t k = 0; k < live_groups.size(); ++k)
-    if (const pid_t id = live_groups[k]; id > 0) {
-      ::kill(-id, SIGKILL);
-      ::rmdir(live_folders[k].data());
-    }
+    if (const pid_t id = live_groups[k]; id > 0)
+      end_processes(id, is_keeper[k]);
 }
 
 NoBrokenPipeSignal::NoBrokenPipeSignal() {

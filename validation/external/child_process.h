@@ -31,7 +31,9 @@ std::string last_words(const std::string& text);
 /// How a process is started.
 struct ProcessStart {
   std::vector<std::string> words;  // a path or a name to be found in PATH first
-  bool has_folder = false;         // of its own, whose path is the last word
+  // By a keeper (process_keeper.h): the process has a folder of its own, whose
+  // path is the last word, and a pipe at kLifeDescriptor.
+  bool is_kept = false;
 };
 
 /// A process with pipes to its standard input, output and error. It is the
@@ -40,12 +42,12 @@ struct ProcessStart {
 /// descriptor is open in it.
 class ChildProcess {
  public:
-  /// Starts a process. With a folder it gets a new and empty one, below that
-  /// for temporary files. Throws std::runtime_error when that fails.
+  /// Starts a process. A kept one gets a new and empty folder, below that for
+  /// temporary files. Throws std::runtime_error when that fails.
   explicit ChildProcess(const ProcessStart& start);
 
-  /// Kills the process group if that was not done, reaps the process, and
-  /// removes its folder.
+  /// Kills the processes if that was not done, reaps the first one, and removes
+  /// its folder.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
@@ -58,11 +60,13 @@ class ChildProcess {
   /// Returns how the process ended if it ends within `seconds`.
   std::optional<ProcessEnd> wait(double seconds);
 
-  /// Kills all processes of its group.
+  /// Kills all processes that it started when it is kept, and otherwise those
+  /// of its group.
   void kill();
 
  private:
   std::optional<OpenFile> input_, output_, error_;
+  std::optional<OpenFile> life_;  // of a kept one; closed, it ends
   pid_t id_ = 0;
   std::size_t slot_ = 0;  // in the table of processes
   std::string folder_;    // or empty
@@ -87,8 +91,7 @@ std::string read_until_end(OpenFile& file, double seconds, bool& in_time);
 std::size_t write_available(std::optional<OpenFile>& pipe,
                             std::string_view bytes);
 
-/// Kills the process groups of all ChildProcess and removes their folders as
-/// far as they are empty. May be called from a signal
+/// Kills all ChildProcess and what they started. May be called from a signal
 /// handler that ends this process.
 void kill_child_processes() noexcept;
 

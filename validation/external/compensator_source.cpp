@@ -159,7 +159,7 @@ CompensatorSource open_source(const std::string& argument,
     case SourceKind::kFunction:
       break;
   }
-  const std::string text = read_text_file(argument);
+  const std::string text = read_compensator_text(argument);
   return source_of(parse_compensator(text, argument), argument, text);
 }
 

@@ -4,7 +4,6 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -26,6 +25,7 @@
 #include "dataset/files/open_file.h"
 #include "include/beamgyro/plugin.h"
 #include "validation/external/landlock.h"
+#include "validation/external/process_keeper.h"
 #include "validation/external/program_search.h"
 #include "validation/external/refused_calls.h"
 
@@ -324,7 +324,9 @@ ProcessStart host_start(const ProcessLimits& limits, const Isolation& isolation,
 int host_plugin(const std::vector<std::string>& words,
                 const std::string& search_path) try {
   const HostedWork work = parsed_work(words);
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const std::size_t together =
+      work.memory > 0 ? work.memory + memory_in_use() : 0;
+  if (const auto status = keep_child(together, work.folder)) return *status;
   ::setenv("HOME", work.folder.c_str(), 1);
   ::setenv("TMPDIR", work.folder.c_str(), 1);
   return hosted(work, search_path);

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+
+namespace beamgyro::internal {
+
+/// Returns whether these are the first bytes of a B-tree of version 2.
+bool is_tree(std::span<const std::byte> header);
+
+/// Returns whether a tree, which a file of `file_size` bytes has, is as HDF5
+/// 1.10 takes for granted that trees are; it crashes on others, or takes the
+/// memory that they claim.
+/// - Its records are links or attributes, and of their size.
+/// - Its nodes fit into the file, all of them together.
+/// - No node claims more records than it has room for.
+/// `read` fills bytes from a place of the file, or returns false.
+bool is_sound_tree(std::span<const std::byte> header, std::uint64_t file_size,
+                   const std::function<bool(std::uint64_t place,
+                                            std::span<std::byte> bytes)>& read);
+
+}  // namespace beamgyro::internal
