@@ -114,7 +114,13 @@ SoakBehaviour behaviour_of(const PlanOptions& options,
   found.rule.lag =
       lag_minutes(device.thermal, time.start, time.ramp, found.rule.steady);
   found.rows = slowest_rows(device.thermal, farthest, time, found.rule);
-  found.start_row = start_row(device.thermal, range.lowest, time, found.rule);
+  const auto row = start_row(device.thermal, range.lowest, time, found.rule);
+  if (options.start_row)
+    found.start_row = row;
+  else
+    found.rule.after_power_on =
+        row ? std::max(kAfterPowerOn, std::ceil(row->way / time.ramp))
+            : kAfterPowerOn;
   found.noise = slow_noise(device.noise);
   found.minutes = options.hold_min;
   return found;

@@ -109,6 +109,14 @@ ResidualForecast Planner::forecast(const std::vector<double>& soaks,
   return forecast_residual(model_, all.soaks, all.errors);
 }
 
+ResidualForecast Planner::forecast_with_intervals_of(
+    const std::vector<double>& soaks, std::size_t minutes) const {
+  if (forecast_basis(model_.population()) != ForecastBasis::kDevices)
+    return forecast(soaks, minutes);
+  const Shown all = shown(soaks, minutes, start_row_of(soaks));
+  return forecast_with_intervals(residual_draws(model_, all.soaks, all.errors));
+}
+
 ResidualDraws Planner::line_draws(const SoakPlan& even) const {
   const Shown all = shown(even.temperatures, whole_minutes(even), std::nullopt);
   return straight_line_draws(model_, all.soaks, all.errors);
@@ -117,7 +125,7 @@ ResidualDraws Planner::line_draws(const SoakPlan& even) const {
 std::optional<ResidualForecast> Planner::straight_lines(
     const SoakPlan& even) const {
   if (forecast_basis(model_.population()) != ForecastBasis::kDevices) return {};
-  return forecast_of(line_draws(even));
+  return forecast_with_intervals(line_draws(even));
 }
 
 std::optional<MedianRatio> Planner::gain(const SoakPlan& plan,
@@ -158,7 +166,7 @@ SoakPlan Planner::judged_with(std::vector<double> soaks, double hold) const {
   std::ranges::sort(soaks);
   const auto minutes = static_cast<std::size_t>(std::lround(hold / 60.0));
   const double hours = chamber_hours(soaks, {time_.start, time_.ramp, hold});
-  const ResidualForecast expected = forecast(soaks, minutes);
+  const ResidualForecast expected = forecast_with_intervals_of(soaks, minutes);
   return {std::move(soaks), hold, hours, expected};
 }
 

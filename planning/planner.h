@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "planning/chamber.h"
+#include "planning/device_resampling.h"
 #include "planning/residual_forecast.h"
 #include "planning/soak_design.h"
 #include "planning/soak_length.h"
@@ -113,6 +114,8 @@ class Planner {
   std::optional<ResidualForecast> straight_lines(const SoakPlan& even) const;
   ResidualForecast forecast(const std::vector<double>& soaks,
                             std::size_t minutes) const;
+  ResidualForecast forecast_with_intervals_of(const std::vector<double>& soaks,
+                                              std::size_t minutes) const;
   std::size_t hold_minutes(const std::vector<double>& soaks) const;
   SoakPlan judged_with(std::vector<double> soaks, double hold) const;
   std::optional<std::vector<double>> best(std::size_t count,

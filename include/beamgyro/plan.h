@@ -33,6 +33,9 @@ struct PlanOptions {
   /// Soaks of your own [degC], to be compared.
   std::vector<std::vector<double>> candidates = {};
   bool bias_only = false;  ///< soaks that observe the bias, but no channel
+  /// Counts on the row that a ramp down from the start shows minutes after
+  /// power-on, which needs device and chamber at the start temperature then.
+  bool start_row = false;
   /// How the schedule names its device file; the name of the device without.
   std::string device_name = {};
 };
