@@ -17,8 +17,9 @@ std::string temperatures_text(const SoakPlan& plan) {
   return fmt::format("{:g}", fmt::join(plan.temperatures, ", "));
 }
 
-std::string interval_text(const std::optional<ForecastIntervals>& intervals,
-                          Interval ForecastIntervals::*which) {
+std::string forecast_interval_text(
+    const std::optional<ForecastIntervals>& intervals,
+    Interval ForecastIntervals::*which) {
   if (!intervals) return fmt::format(" {:14}", "");
   const Interval& interval = *intervals.*which;
   return fmt::format(
@@ -27,9 +28,10 @@ std::string interval_text(const std::optional<ForecastIntervals>& intervals,
 
 std::string interval_columns(const SoakPlan& plan) {
   const auto& [median, p90, p95, intervals] = plan.expected;
-  return fmt::format("{:>7.2f}{:>8.3f}{}{:>7.3f}{:>7.3f}{}", plan.hours, median,
-                     interval_text(intervals, &ForecastIntervals::median), p90,
-                     p95, interval_text(intervals, &ForecastIntervals::p95));
+  return fmt::format(
+      "{:>7.2f}{:>8.3f}{}{:>7.3f}{:>7.3f}{}", plan.hours, median,
+      forecast_interval_text(intervals, &ForecastIntervals::median), p90, p95,
+      forecast_interval_text(intervals, &ForecastIntervals::p95));
 }
 
 std::string forecast_columns(const SoakPlan& plan) {
@@ -93,6 +95,22 @@ std::string comparison(const PlanResult& result) {
     line("lines", {result.even.temperatures, result.even.hold,
                    result.even.hours, *result.straight_lines});
   for (const SoakPlan& plan : result.candidates) line("candidate", plan);
+  return text;
+}
+
+std::string extrapolated_lines(const PlanResult& result) {
+  std::string text;
+  for (const auto& [range, expected] : result.extrapolated)
+    fmt::format_to(
+        std::back_inserter(text),
+        "beyond the chamber, extrapolated from {:g} to {:g} degC: "
+        "median {:.3f}{}, p95 {:.3f} deg/s\n",
+        range.lowest, range.highest, expected.median,
+        expected.intervals
+            ? fmt::format(" [{:.3f}, {:.3f}]", expected.intervals->median.low,
+                          expected.intervals->median.high)
+            : "",
+        expected.p95);
   return text;
 }
 
@@ -166,11 +184,16 @@ Json schedule_json(const PlanResult& result) {
 
 std::string plan_text(const PlanResult& result) {
   return gain_lines(result) + schedule_lines(result) + comparison(result) +
-         trade_off_table(result.trade_offs);
+         extrapolated_lines(result) + trade_off_table(result.trade_offs);
 }
 
 Json plan_json(const PlanResult& result) {
   Json table = Json::array(), candidates = Json::array();
+  Json extrapolated = Json::array();
+  for (const auto& [range, expected] : result.extrapolated)
+    extrapolated.push_back(
+        {{"range_degC", {range.lowest, range.highest}},
+         {"expected_rms_deg_per_s", forecast_json(expected)}});
   for (const TradeOff& row : result.trade_offs)
     table.push_back({{"soaks", row.planned.temperatures.size()},
                      {"planned", soaks_json(row.planned)},
@@ -184,6 +207,7 @@ Json plan_json(const PlanResult& result) {
           {"straight_lines", optional_json(result.straight_lines)},
           {"gain_over_straight_lines", gain_json(result)},
           {"candidates", std::move(candidates)},
+          {"extrapolated", std::move(extrapolated)},
           {"trade_off", std::move(table)},
           {"range_degC", {result.range.lowest, result.range.highest}},
           {"observed", result.observed},

@@ -234,6 +234,33 @@ class Plan(ProgramTest):
         self.assertIn("of what constants through one soak leave\n",
                       self.ok("plan", "population.json", "--soaks", "1"))
 
+    def test_a_narrower_chamber_extrapolates_with_its_uncertainty(self):
+        words = self.ok("plan", "population.json", "--soaks", "3", "--range",
+                        "-40:50", "--chamber", "-20:40")
+        freezer = self.plan("--soaks", "3", "--range", "-40:50", "--chamber",
+                            "-20:40")
+        whole = self.plan("--soaks", "3", "--range", "-40:50")
+        for name, one in [("planned", freezer["schedule"]),
+                          ("even", freezer["even"])]:
+            soaks = one["temperatures_degC"]
+            self.assertTrue(-20 <= min(soaks) and max(soaks) <= 40, name)
+        self.assertEqual(freezer["even"]["temperatures_degC"], [-20, 10, 40])
+        left, free = (plan["expected_rms_deg_per_s"]["median"]
+                      for plan in [freezer, whole])
+        self.assertGreater(left, 1.3 * free)
+        # The mean square over the range is that over its parts.
+        cold, hot = freezer["extrapolated"]
+        self.assertEqual([cold["range_degC"], hot["range_degC"]],
+                         [[-40, -20], [40, 50]])
+        self.assertGreater(cold["expected_rms_deg_per_s"]["median"], left)
+        self.assertIn("beyond the chamber, extrapolated from -40 to -20 degC: "
+                      "median", words)
+        self.assertEqual(whole["extrapolated"], [])
+        # Freezers of which the range needs nothing.
+        apart = self.plan("--soaks", "2", "--range", "-30:0", "--chamber",
+                          "10:50")
+        self.assertEqual(apart["extrapolated"][0]["range_degC"], [-30, 0])
+
     def test_candidates_are_compared(self):
         self.write("mine.txt", "# my soaks\n-40, 5, 50\n\n-30,0\n")
         plan = self.plan("--soaks", "3", "--range", "-40:50", "--candidates",
@@ -305,7 +332,8 @@ class Plan(ProgramTest):
                 ([*two, "--range", "-60:50"], "the population knows"),
                 ([*two, "--range", "50:-40"], "--range 50:-40"),
                 ([*two, "--range", "cold"], "expected LOW:HIGH"),
-                ([*two, "--chamber", "-20:60"], "narrower than the range"),
+                ([*two, "--chamber", "80:90"],
+                 "knows no temperature of a chamber that reaches 80 to 90"),
                 ([*two, "--candidates", "-40,warm"], "-40,warm"),
                 ([*two, "--candidates", "words.txt"], "words.txt:1"),
                 ([*two, "--candidates", "-70,5"], "outside the chamber"),
