@@ -147,19 +147,24 @@ class Population:
     def inside(self, sensor):
         return np.clip(sensor, self.grid[0], self.grid[-1])
 
-    def left(self, rows, sensor, bias, channels):
-        """rms over the check of a device, adapted at points."""
-        at, check = self.inside(rows[:, 0]), self.inside(sensor)
+    def adapted(self, T, shown, sensor, channels=True):
+        """The curves of devices, a row each, that show bias and quadrature,
+        a row each, at points T."""
+        at, check = self.inside(T), self.inside(sensor)
         H, y = [], []
         for k in range(1 + channels):
             mean, modes = self.curves[2 * k:2 * k + 2]
             H.append(modes(at) / self.noise[k])
-            y.append((rows[:, 1 + k] - mean(at)) / self.noise[k])
+            y.append((shown[k] - mean(at)) / self.noise[k])
         H, y = np.vstack(H), np.hstack(y)
-        c = np.linalg.solve(np.eye(H.shape[1]) + H.T @ H, H.T @ y)
+        c = np.linalg.solve(np.eye(H.shape[1]) + H.T @ H, H.T @ y.T)
         mean, modes = self.curves[:2]
-        error = bias - mean(check) - modes(check) @ c
-        return np.sqrt((error ** 2).mean())
+        return mean(check) + (modes(check) @ c).T
+
+    def left(self, rows, sensor, bias, channels):
+        """rms over the check of a device, adapted at points."""
+        curve = self.adapted(rows[:, 0], rows.T[1:, None], sensor, channels)
+        return np.sqrt(((bias - curve[0]) ** 2).mean())
 
 
 def quantiles(rms):

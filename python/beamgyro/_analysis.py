@@ -163,6 +163,7 @@ def sensitivity(campaign: CampaignLike, *, figures: Sequence[str] = (),
                 compensator: Optional[Any] = None,
                 range_degC: Range = (-40.0, 50.0), linear: bool = False,
                 limits: Optional[Mapping[str, float]] = None,
+                wanted_yield: Optional[float] = None,
                 samples: int = 2048, seed: Optional[int] = None,
                 jobs: int = 0, progress: ProgressArgument = False
                 ) -> SensitivityResult:
@@ -177,6 +178,8 @@ def sensitivity(campaign: CampaignLike, *, figures: Sequence[str] = (),
         range_degC: temperatures of the beam.
         linear: studies every figure as it is, not the logarithm.
         limits: largest good magnitudes by figure; they add yields.
+        wanted_yield: share of good devices, above 0 and below 1; adds how
+            narrow single tolerances have to be for it.
         samples: each takes a device for every tolerance and three more.
         seed: that of the campaign without.
         jobs: threads; 0: one for each core.
@@ -196,6 +199,8 @@ def sensitivity(campaign: CampaignLike, *, figures: Sequence[str] = (),
         "jobs": _arguments.jobs(jobs)}
     if seed is not None:
         options["seed"] = _arguments.seed(seed)
+    if wanted_yield is not None:
+        options["yield"] = _arguments.number(wanted_yield, "wanted_yield")
     if compensator is not None:
         options["compensator"] = compensator_of(compensator)._trained("file")
     with watched(progress, "studying") as function:

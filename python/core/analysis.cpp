@@ -209,6 +209,7 @@ py::tuple study_sensitivity(const Campaign& campaign, const py::dict& given,
   take(given, "highest_degC", options.highest_degC);
   take(given, "linear", options.linear);
   take(given, "limits", options.limits);
+  take(given, "yield", options.yield);
   take(given, "samples", options.samples);
   take(given, "seed", options.seed);
   take(given, "jobs", options.jobs);
