@@ -65,17 +65,20 @@ TemperatureRange known_range(const Population& population,
 
 TemperatureRange chamber_of(const PlanOptions& options,
                             const TemperatureRange& range) {
-  if (!options.chamber_degC) return range;
-  const TemperatureRange chamber =
-      checked_range("chamber_degC", *options.chamber_degC);
-  if (chamber.lowest > range.lowest || chamber.highest < range.highest)
-    throw option_error(
-        "{}: narrower than the range {:g}:{:g}; expected a chamber that "
-        "reaches both ends, or a narrower {}",
-        NamedOption{"chamber_degC",
-                    fmt::format("{:g}:{:g}", chamber.lowest, chamber.highest)},
-        range.lowest, range.highest, NamedOption{"range_degC"});
-  return chamber;
+  return options.chamber_degC
+             ? checked_range("chamber_degC", *options.chamber_degC)
+             : range;
+}
+
+// The parts of the range that the chamber does not reach.
+std::vector<TemperatureRange> beyond(const TemperatureRange& chamber,
+                                     const TemperatureRange& range) {
+  std::vector<TemperatureRange> parts;
+  if (chamber.lowest > range.lowest)
+    parts.push_back({range.lowest, std::min(chamber.lowest, range.highest)});
+  if (chamber.highest < range.highest)
+    parts.push_back({std::max(chamber.highest, range.lowest), range.highest});
+  return parts;
 }
 
 ChamberTime time_of(const PlanOptions& options) {
@@ -114,7 +117,13 @@ SoakBehaviour behaviour_of(const PlanOptions& options,
   found.rule.lag =
       lag_minutes(device.thermal, time.start, time.ramp, found.rule.steady);
   found.rows = slowest_rows(device.thermal, farthest, time, found.rule);
-  found.start_row = start_row(device.thermal, range.lowest, time, found.rule);
+  const auto row = start_row(device.thermal, range.lowest, time, found.rule);
+  if (options.start_row)
+    found.start_row = row;
+  else
+    found.rule.after_power_on =
+        row ? std::max(kAfterPowerOn, std::ceil(row->way / time.ramp))
+            : kAfterPowerOn;
   found.noise = slow_noise(device.noise);
   found.minutes = options.hold_min;
   return found;
@@ -232,6 +241,9 @@ SoakPlanResult planned(const Compensator& population, const Device& device,
   found.trade_offs = s.planner.trade_offs(
       std::min(std::max(count, kLeastTable), s.planner.most_soaks()));
   found.straight_lines = found.trade_offs.at(count - 1).straight_lines;
+  for (const TemperatureRange& part : beyond(s.chamber, s.range))
+    found.extrapolated.push_back(
+        {part, s.planner.left_over(found.chosen, part)});
   found.time = s.planner.time_of(found.chosen);
   found.rule = s.planner.rule();
   found.range = s.model.range();

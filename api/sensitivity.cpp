@@ -18,6 +18,7 @@
 #include "report/sensitivity_report.h"
 #include "sensitivity/figures/figure_of_merit.h"
 #include "sensitivity/study/device_sample.h"
+#include "sensitivity/study/narrowed_yield.h"
 #include "sensitivity/study/sensitivity_study.h"
 #include "sim/thermal/thermal_parameters.h"
 
@@ -111,6 +112,17 @@ DeviceSampleOptions sample_options(const Campaign& campaign,
   return sample;
 }
 
+void add_narrowed(YieldResult& yield, const CampaignPlan& campaign,
+                  DeviceSampleOptions options, Merit merit,
+                  const std::vector<std::string>& keys,
+                  const std::optional<double>& target,
+                  DeviceSampleCounts& counts) {
+  options.merits = {merit};
+  const NarrowingStudy study{campaign, options, keys};
+  add_pairs(yield, study, counts);
+  if (target) add_needed(yield, *target, study, counts);
+}
+
 }  // namespace
 
 std::vector<std::string> merit_names() {
@@ -133,6 +145,12 @@ SensitivityResult studied(const Campaign& campaign,
   SensitivityResult result;
   result.text = sample_lines(sample, head);
   std::vector<MeritResult> found;
+  if (options.yield && limits.empty())
+    throw std::invalid_argument(
+        fmt::format("yield {:g} of no limit; expected a limit of a figure with "
+                    "it",
+                    *options.yield));
+  check_number("yield", options.yield, {0, 1, true, true});
   for (std::size_t m = 0; m < asked.merits.size(); ++m) {
     const Merit merit = asked.merits[m];
     const auto limit = limits.find(merit);
@@ -140,6 +158,9 @@ SensitivityResult studied(const Campaign& campaign,
         merit, figure_of_merit(merit).is_positive && !options.linear};
     if (limit != limits.end()) question.limit = limit->second;
     found.push_back(analysed(sample, m, question, asked.seed));
+    if (found.back().yield)
+      add_narrowed(*found.back().yield, own, asked, merit, sample.keys,
+                   options.yield, counts);
     result.text += '\n' + sensitivity_table(found.back());
     result.figures.push_back(figure_of(found.back()));
   }

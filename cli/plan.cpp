@@ -8,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "api/soak_plan.h"
@@ -48,12 +49,22 @@ Device read_device_of(const PlanArguments& arguments) {
   return Device::read(device);
 }
 
-// The device as a scenario at `output` names it: by a path from there, unless
-// the user or the program named it by an absolute one.
+// Where the device is copied to, beside the schedule, so that both can go to
+// another machine: one that is named by a path of this one. Nothing otherwise.
+fs::path device_copy(const PlanArguments& arguments) {
+  if (arguments.output.empty() || device_of(arguments).is_relative()) return {};
+  const fs::path schedule = arguments.output;
+  const fs::path copy =
+      schedule.parent_path() / (schedule.stem().string() + "_device.toml");
+  std::error_code absent;
+  return fs::equivalent(copy, device_of(arguments), absent) ? fs::path() : copy;
+}
+
+// The device as the schedule names it: by a path from there.
 std::string device_name(const PlanArguments& arguments) {
-  const fs::path device = device_of(arguments);
-  if (device.is_absolute()) return device.string();
-  return fs::proximate(fs::absolute(device),
+  if (const fs::path copy = device_copy(arguments); !copy.empty())
+    return copy.filename().string();
+  return fs::proximate(fs::absolute(device_of(arguments)),
                        fs::absolute(arguments.output).parent_path())
       .generic_string();
 }
@@ -76,6 +87,8 @@ void check_outputs(const PlanArguments& arguments) {
   for (const std::string& output : {arguments.output, arguments.picture})
     if (!output.empty()) require_output(output, inputs);
   if (!arguments.output.empty()) require_ending(arguments.output, {".toml"});
+  if (const fs::path copy = device_copy(arguments); !copy.empty())
+    require_output(copy.string(), inputs);
   require_json_output(arguments.json, inputs);
   if (!arguments.picture.empty())
     require_picture_name("--picture", arguments.picture);
@@ -121,12 +134,14 @@ int run_plan(const PlanArguments& arguments) {
   check_goal(options);
   check_outputs(arguments);
   const auto population = Compensator::read(arguments.population);
+  const Device device = read_device_of(arguments);
   const SoakPlanResult result =
-      planned(population, read_device_of(arguments), options,
-              candidates_of(arguments.candidates));
+      planned(population, device, options, candidates_of(arguments.candidates));
   if (!arguments.picture.empty()) draw_plan(result.json, arguments.picture);
   if (!arguments.output.empty())
     write_text_file(arguments.output, result.schedule);
+  if (const fs::path copy = device_copy(arguments); !copy.empty())
+    write_text_file(copy, device.text());
   if (!arguments.json.empty()) write_text_file(arguments.json, result.json);
   for (const std::string& warning : result.warnings) print_warning(warning);
   print_result(result.text);
@@ -153,6 +168,11 @@ void add_chamber_options(Command& command, PlanArguments& arguments) {
   command.number({"--start", "DEGC",
                   "Temperature at which chamber and device begin", "25"},
                  arguments.options.start_degC);
+  command.flag({"--start-row", "",
+                "Counts on the row that a ramp down from the start shows "
+                "minutes after power-on, with device and chamber at the start "
+                "temperature"},
+               arguments.options.start_row);
 }
 
 void add_plan_options(Command& command, PlanArguments& arguments) {

@@ -123,12 +123,18 @@ void add_questions(Command& command, SensitivityArguments& arguments) {
                 "Studies every figure as it is, not the logarithm of those "
                 "that are always positive"},
                arguments.options.linear);
-  command.texts({"--limit", "FIGURE=VALUE",
-                 "Largest magnitude that is good; adds the share of good "
-                 "devices, as it is and with each tolerance halved; may be "
-                 "repeated",
-                 "no limit"},
-                arguments.limits);
+  command.texts(
+      {"--limit", "FIGURE=VALUE",
+       "Largest magnitude that is good; adds the share of good "
+       "devices, as it is, with each tolerance halved and with two at "
+       "once; may be repeated",
+       "no limit"},
+      arguments.limits);
+  command.number({"--yield", "SHARE",
+                  "Share of good devices that is wanted, as in 0.95; adds how "
+                  "narrow single tolerances have to be for it",
+                  "not asked"},
+                 arguments.options.yield, {0, 1, true, true});
 }
 
 }  // namespace

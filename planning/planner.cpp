@@ -59,6 +59,15 @@ Planner::Planner(const SoakModel& model, TemperatureRange chamber,
   for (double T = chamber.lowest; T <= chamber.highest + 1e-9;
        T += kCandidateStep)
     if (model.reaches(T)) limits_.candidates.push_back(T);
+  if (limits_.candidates.empty())
+    throw std::invalid_argument(fmt::format(
+        "the population knows no temperature of a chamber that reaches {:g} to "
+        "{:g} degC; expected another chamber",
+        chamber.lowest, chamber.highest));
+  even_range_ = {std::max(model.range().lowest, limits_.candidates.front()),
+                 std::min(model.range().highest, limits_.candidates.back())};
+  if (even_range_.lowest > even_range_.highest)
+    even_range_ = {limits_.candidates.front(), limits_.candidates.back()};
 }
 
 std::size_t Planner::most_soaks() const {
@@ -109,6 +118,21 @@ ResidualForecast Planner::forecast(const std::vector<double>& soaks,
   return forecast_residual(model_, all.soaks, all.errors);
 }
 
+ResidualForecast Planner::forecast_with_intervals_of(
+    const SoakModel& model, const std::vector<double>& soaks,
+    std::size_t minutes) const {
+  const Shown all = shown(soaks, minutes, start_row_of(soaks));
+  if (forecast_basis(model.population()) != ForecastBasis::kDevices)
+    return forecast_residual(model, all.soaks, all.errors);
+  return forecast_with_intervals(residual_draws(model, all.soaks, all.errors));
+}
+
+ResidualForecast Planner::left_over(const SoakPlan& plan,
+                                    const TemperatureRange& range) const {
+  return forecast_with_intervals_of(model_.over(range), plan.temperatures,
+                                    whole_minutes(plan));
+}
+
 ResidualDraws Planner::line_draws(const SoakPlan& even) const {
   const Shown all = shown(even.temperatures, whole_minutes(even), std::nullopt);
   return straight_line_draws(model_, all.soaks, all.errors);
@@ -117,7 +141,7 @@ ResidualDraws Planner::line_draws(const SoakPlan& even) const {
 std::optional<ResidualForecast> Planner::straight_lines(
     const SoakPlan& even) const {
   if (forecast_basis(model_.population()) != ForecastBasis::kDevices) return {};
-  return forecast_of(line_draws(even));
+  return forecast_with_intervals(line_draws(even));
 }
 
 std::optional<MedianRatio> Planner::gain(const SoakPlan& plan,
@@ -158,7 +182,8 @@ SoakPlan Planner::judged_with(std::vector<double> soaks, double hold) const {
   std::ranges::sort(soaks);
   const auto minutes = static_cast<std::size_t>(std::lround(hold / 60.0));
   const double hours = chamber_hours(soaks, {time_.start, time_.ramp, hold});
-  const ResidualForecast expected = forecast(soaks, minutes);
+  const ResidualForecast expected =
+      forecast_with_intervals_of(model_, soaks, minutes);
   return {std::move(soaks), hold, hours, expected};
 }
 
@@ -172,7 +197,7 @@ SoakPlan Planner::even(std::size_t count) const {
   auto known = even_.find(count);
   if (known == even_.end())
     known =
-        even_.emplace(count, judged(even_spacing(model_.range(), count))).first;
+        even_.emplace(count, judged(even_spacing(even_range_, count))).first;
   return known->second;
 }
 
@@ -193,8 +218,8 @@ Planner::Ending Planner::best_of(const DesignLimits& limits,
                                  std::size_t count) const {
   const SoakDesign design(model_, limits);
   Ending best;
-  std::vector<std::vector<double>> starts = {
-      design.extended({}, count), even_spacing(model_.range(), count)};
+  std::vector<std::vector<double>> starts = {design.extended({}, count),
+                                             even_spacing(even_range_, count)};
   const std::size_t last = limits_.candidates.size() - 1;
   for (std::size_t k = 0; k <= kFurtherStarts; ++k)
     starts.push_back(design.extended(

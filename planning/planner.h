@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "planning/chamber.h"
+#include "planning/device_resampling.h"
 #include "planning/residual_forecast.h"
 #include "planning/soak_design.h"
 #include "planning/soak_length.h"
@@ -53,7 +54,8 @@ class Planner {
   /// more than kHoldLoss above that of the best one: the beam lags in shorter
   /// holds, and the bias walks in longer ones. The model must outlive
   /// the planner. Throws std::invalid_argument for a user's hold that has too
-  /// few rows, and when every hold has.
+  /// few rows, when every hold has, and for a chamber that reaches no
+  /// temperature that the population knows.
   Planner(const SoakModel& model, TemperatureRange chamber,
           const ChamberTime& time, SoakBehaviour behaviour);
 
@@ -78,7 +80,13 @@ class Planner {
   /// std::invalid_argument when no plan is that good.
   SoakPlan within_residual(double residual, double rounding = 0.0) const;
 
+  /// Evenly spaced over the range, as far as the chamber reaches.
   SoakPlan even(std::size_t count) const;
+
+  /// Returns what a plan leaves over another range, beyond the chamber for
+  /// instance.
+  ResidualForecast left_over(const SoakPlan& plan,
+                             const TemperatureRange& range) const;
 
   /// Judges soaks at any temperatures. Throws std::invalid_argument for one
   /// that the population does not reach.
@@ -113,6 +121,9 @@ class Planner {
   std::optional<ResidualForecast> straight_lines(const SoakPlan& even) const;
   ResidualForecast forecast(const std::vector<double>& soaks,
                             std::size_t minutes) const;
+  ResidualForecast forecast_with_intervals_of(const SoakModel& model,
+                                              const std::vector<double>& soaks,
+                                              std::size_t minutes) const;
   std::size_t hold_minutes(const std::vector<double>& soaks) const;
   SoakPlan judged_with(std::vector<double> soaks, double hold) const;
   std::optional<std::vector<double>> best(std::size_t count,
@@ -126,6 +137,7 @@ class Planner {
   SoakBehaviour behaviour_;
   std::size_t shortest_ = 0;  // [min], hold with enough rows
   DesignLimits limits_;
+  TemperatureRange even_range_;
   // Of each number of soaks, once it was asked for.
   mutable std::map<std::size_t, SoakPlan> planned_, even_;
 };

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <span>
 #include <utility>
 
@@ -25,7 +24,6 @@ using Eigen::VectorXd;
 
 constexpr Index kLeastDevices = 3;   // one that is predicted by two others
 constexpr Index kLeastDraws = 4000;  // of devices and noise
-constexpr std::uint32_t kResamples = 400;  // of the devices
 
 // A matrix of normal numbers, from stream `number`.
 MatrixXd normal_numbers(Index rows, Index columns, std::uint32_t number) {
@@ -38,7 +36,8 @@ MatrixXd normal_numbers(Index rows, Index columns, std::uint32_t number) {
 
 ResidualForecast quantiles_of(std::vector<double> rms) {
   std::ranges::sort(rms);
-  return {percentile(rms, 0.5), percentile(rms, 0.9), percentile(rms, 0.95)};
+  const auto [median, p90, p95] = kForecastShares;
+  return {percentile(rms, median), percentile(rms, p90), percentile(rms, p95)};
 }
 
 MatrixXd inverse_with_identity(MatrixXd B) {
@@ -132,26 +131,6 @@ MatrixXd line_weights(const ArrayXd& temperatures,
   return weights;
 }
 
-double middle_of(std::vector<double> values) {
-  const auto middle =
-      values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
-double ratio_of_middles(const ResidualDraws& draws, const ResidualDraws& others,
-                        const std::vector<std::size_t>& devices) {
-  const auto middle = [&](const ResidualDraws& from) {
-    std::vector<double> rms;
-    rms.reserve(from.rms.size());
-    for (std::size_t first = 0; first < from.rms.size(); first += from.devices)
-      for (const std::size_t device : devices)
-        rms.push_back(from.rms[first + device]);
-    return middle_of(std::move(rms));
-  };
-  return middle(draws) / middle(others);
-}
-
 ResidualForecast forecast_of_process(const SoakModel& model,
                                      const Observation& soaks) {
   const MatrixXd K = inverse_with_identity(soaks.H.transpose() * soaks.H) *
@@ -241,25 +220,6 @@ ResidualDraws straight_line_draws(const SoakModel& model,
           rms.push_back(one.norm() /
                         std::sqrt(static_cast<double>(one.size())));
       });
-}
-
-MedianRatio ratio_of_medians(const ResidualDraws& draws,
-                             const ResidualDraws& others) {
-  std::vector<std::size_t> devices(draws.devices);
-  std::iota(devices.begin(), devices.end(), 0);
-  const double value = ratio_of_middles(draws, others, devices);
-  std::vector<double> resampled;
-  for (std::uint32_t k = 0; k < kResamples; ++k) {
-    RandomStream stream(0, k, 0, kPlanGainStream);
-    for (std::size_t& device : devices)
-      device = static_cast<std::size_t>(stream.uniform() *
-                                        static_cast<double>(draws.devices));
-    resampled.push_back(ratio_of_middles(draws, others, devices));
-  }
-  std::ranges::sort(resampled);
-  return {value,
-          {percentile(resampled, kIntervalTail),
-           percentile(resampled, 1.0 - kIntervalTail)}};
 }
 
 ResidualForecast forecast_residual(const SoakModel& model,

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "planning/chamber.h"
@@ -25,10 +28,19 @@ Eigen::MatrixXd slow_noise_root(const SlowNoise& noise,
                                 const ChamberTime& time,
                                 bool start_row = false);
 
+/// The 95 % intervals of the quantiles of a forecast.
+struct ForecastIntervals {
+  Interval median, p90, p95;
+};
+
+constexpr std::array<double, 3> kForecastShares = {0.5, 0.9, 0.95};
+
 /// The rms over the range [deg/s] of what compensation leaves of the bias: its
 /// quantiles over devices of the population.
 struct ResidualForecast {
   double median = 0.0, p90 = 0.0, p95 = 0.0;
+  // Where they were computed, forecast_with_intervals().
+  std::optional<ForecastIntervals> intervals = {};
 };
 
 /// Where a forecast takes its devices from.
@@ -96,17 +108,5 @@ ResidualDraws residual_draws(const SoakModel& model,
 ResidualDraws straight_line_draws(const SoakModel& model,
                                   const std::vector<double>& soaks,
                                   const SoakErrors& errors = {});
-
-/// A quotient of medians over devices, with its 95 % interval.
-struct MedianRatio {
-  double value;
-  Interval interval;
-};
-
-/// Returns the median of `draws` over that of `others`, of the same devices.
-/// The interval is by resampling the devices, each with all its draws (random
-/// stream kPlanGainStream). A population of few devices has a wide one.
-MedianRatio ratio_of_medians(const ResidualDraws& draws,
-                             const ResidualDraws& others);
 
 }  // namespace beamgyro::internal

@@ -30,8 +30,12 @@ std::string soak_count(std::size_t count) {
 }
 
 std::string rule_text(const RowRule& rule) {
-  return fmt::format("rows = {{ steady_K_per_min = {:g}, lag_min = {:g} }}",
-                     rule.steady, rule.lag);
+  return fmt::format(
+      "rows = {{ steady_K_per_min = {:g}, lag_min = {:g}{} }}", rule.steady,
+      rule.lag,
+      rule.after_power_on > 0.0
+          ? fmt::format(", after_power_on_min = {:g}", rule.after_power_on)
+          : "");
 }
 
 std::string schedule_text(const std::vector<double>& soaks,

@@ -11,8 +11,9 @@
 namespace beamgyro::internal {
 
 // Rows that scenarios/population/adapted.toml trains on.
-constexpr double kSteady = 0.2;      // [K/min], faster rows are left out
-constexpr int kLeastSteadyRows = 5;  // of a minute, that a soak should have
+constexpr double kSteady = 0.2;        // [K/min], faster rows are left out
+constexpr double kAfterPowerOn = 5.0;  // [min], earlier rows are left out
+constexpr int kLeastSteadyRows = 5;    // of a minute, that a soak should have
 
 /// Rows of one soak, by the thermal model.
 struct SoakRows {
@@ -31,6 +32,7 @@ struct StartRow {
 struct RowRule {
   double steady = kSteady;  // [K/min], faster rows are left out
   double lag = 0.0;  // [min]: a row is at T - lag dT/dt of the sensor's T
+  double after_power_on = 0.0;  // [min], of the first row
 };
 
 /// Returns the lag [min] that rows should be read with, to a tenth: after a

@@ -66,8 +66,19 @@ SoakModel::SoakModel(Population population, SensorOfChamber sensor,
       modes_.push_back(
           bias_curve(population_, mode.segment(curve * grid, grid).array()));
   }
+  weigh_range();
+}
+
+void SoakModel::weigh_range() {
   const MatrixXd bias = values(0, known_sensor(range_grid()));
   weight_ = bias.transpose() * bias / static_cast<double>(bias.rows());
+}
+
+SoakModel SoakModel::over(const TemperatureRange& range) const {
+  SoakModel other = *this;
+  other.options_.range = range;
+  other.weigh_range();
+  return other;
 }
 
 void SoakModel::add_own_modes() {

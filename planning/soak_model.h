@@ -52,6 +52,10 @@ class SoakModel {
   /// in them, because their curves are sums of the other modes.
   const Population& population() const { return population_; }
   TemperatureRange range() const { return options_.range; }
+
+  /// Returns the same model with the residual over another range. Throws as the
+  /// constructor.
+  SoakModel over(const TemperatureRange& range) const;
   PointNoise noise() const;
   Eigen::Index modes() const { return population_.modes.cols(); }
 
@@ -97,6 +101,7 @@ class SoakModel {
 
  private:
   void add_own_modes();
+  void weigh_range();
   Eigen::ArrayXd known_sensor(const Eigen::ArrayXd& chamber) const;
   Eigen::ArrayXd known_beam(const Eigen::ArrayXd& sensor,
                             const std::vector<double>& lag) const;

@@ -17,6 +17,23 @@ std::string temperatures_text(const SoakPlan& plan) {
   return fmt::format("{:g}", fmt::join(plan.temperatures, ", "));
 }
 
+std::string forecast_interval_text(
+    const std::optional<ForecastIntervals>& intervals,
+    Interval ForecastIntervals::*which) {
+  if (!intervals) return fmt::format(" {:14}", "");
+  const Interval& interval = *intervals.*which;
+  return fmt::format(
+      " {:<14}", fmt::format("[{:.3f}, {:.3f}]", interval.low, interval.high));
+}
+
+std::string interval_columns(const SoakPlan& plan) {
+  const auto& [median, p90, p95, intervals] = plan.expected;
+  return fmt::format(
+      "{:>7.2f}{:>8.3f}{}{:>7.3f}{:>7.3f}{}", plan.hours, median,
+      forecast_interval_text(intervals, &ForecastIntervals::median), p90, p95,
+      forecast_interval_text(intervals, &ForecastIntervals::p95));
+}
+
 std::string forecast_columns(const SoakPlan& plan) {
   return fmt::format("{:>7.2f}{:>9.3f}{:>9.3f}{:>9.3f}", plan.hours,
                      plan.expected.median, plan.expected.p90,
@@ -66,11 +83,11 @@ std::string schedule_lines(const PlanResult& result) {
 
 std::string comparison(const PlanResult& result) {
   std::string text =
-      fmt::format("{:<10}{:>7}{:>9}{:>9}{:>9}  rms left, deg/s\n", "schedule",
-                  "hours", "median", "p90", "p95");
+      fmt::format("{:<10}{:>7}{:>8} {:<14}{:>7}{:>7} {:<14}  rms left, deg/s\n",
+                  "schedule", "hours", "median", "95 %", "p90", "p95", "95 %");
   const auto line = [&](const char* name, const SoakPlan& plan) {
     fmt::format_to(std::back_inserter(text), "{:<10}{}  {}\n", name,
-                   forecast_columns(plan), temperatures_text(plan));
+                   interval_columns(plan), temperatures_text(plan));
   };
   line("planned", result.chosen);
   line("even", result.even);
@@ -78,6 +95,22 @@ std::string comparison(const PlanResult& result) {
     line("lines", {result.even.temperatures, result.even.hold,
                    result.even.hours, *result.straight_lines});
   for (const SoakPlan& plan : result.candidates) line("candidate", plan);
+  return text;
+}
+
+std::string extrapolated_lines(const PlanResult& result) {
+  std::string text;
+  for (const auto& [range, expected] : result.extrapolated)
+    fmt::format_to(
+        std::back_inserter(text),
+        "beyond the chamber, extrapolated from {:g} to {:g} degC: "
+        "median {:.3f}{}, p95 {:.3f} deg/s\n",
+        range.lowest, range.highest, expected.median,
+        expected.intervals
+            ? fmt::format(" [{:.3f}, {:.3f}]", expected.intervals->median.low,
+                          expected.intervals->median.high)
+            : "",
+        expected.p95);
   return text;
 }
 
@@ -98,9 +131,16 @@ std::string trade_off_table(const std::vector<TradeOff>& table) {
 }
 
 Json forecast_json(const ResidualForecast& expected) {
-  return {{"median", expected.median},
-          {"p90", expected.p90},
-          {"p95", expected.p95}};
+  Json json = {{"median", expected.median}, {"p90", expected.p90},
+               {"p95", expected.p95},       {"median_interval", nullptr},
+               {"p90_interval", nullptr},   {"p95_interval", nullptr}};
+  if (expected.intervals) {
+    const auto& [median, p90, p95] = *expected.intervals;
+    json["median_interval"] = {median.low, median.high};
+    json["p90_interval"] = {p90.low, p90.high};
+    json["p95_interval"] = {p95.low, p95.high};
+  }
+  return json;
 }
 
 Json soaks_json(const SoakPlan& plan) {
@@ -135,7 +175,8 @@ Json schedule_json(const PlanResult& result) {
           {"start_degC", result.time.start},
           {"rows",
            {{"steady_K_per_min", result.rule.steady},
-            {"lag_min", result.rule.lag}}},
+            {"lag_min", result.rule.lag},
+            {"after_power_on_min", result.rule.after_power_on}}},
           {"visits", std::move(stops)}};
 }
 
@@ -143,11 +184,16 @@ Json schedule_json(const PlanResult& result) {
 
 std::string plan_text(const PlanResult& result) {
   return gain_lines(result) + schedule_lines(result) + comparison(result) +
-         trade_off_table(result.trade_offs);
+         extrapolated_lines(result) + trade_off_table(result.trade_offs);
 }
 
 Json plan_json(const PlanResult& result) {
   Json table = Json::array(), candidates = Json::array();
+  Json extrapolated = Json::array();
+  for (const auto& [range, expected] : result.extrapolated)
+    extrapolated.push_back(
+        {{"range_degC", {range.lowest, range.highest}},
+         {"expected_rms_deg_per_s", forecast_json(expected)}});
   for (const TradeOff& row : result.trade_offs)
     table.push_back({{"soaks", row.planned.temperatures.size()},
                      {"planned", soaks_json(row.planned)},
@@ -161,6 +207,7 @@ Json plan_json(const PlanResult& result) {
           {"straight_lines", optional_json(result.straight_lines)},
           {"gain_over_straight_lines", gain_json(result)},
           {"candidates", std::move(candidates)},
+          {"extrapolated", std::move(extrapolated)},
           {"trade_off", std::move(table)},
           {"range_degC", {result.range.lowest, result.range.highest}},
           {"observed", result.observed},

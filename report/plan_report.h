@@ -14,6 +14,12 @@
 
 namespace beamgyro::internal {
 
+/// What a plan leaves where the chamber does not reach.
+struct Extrapolated {
+  TemperatureRange range;  // [degC]
+  ResidualForecast expected;
+};
+
 /// What `plan` has found.
 struct PlanResult {
   SoakPlan chosen, even;  // of the same number of soaks
@@ -22,13 +28,14 @@ struct PlanResult {
   std::optional<MedianRatio> gain;
   std::optional<ResidualForecast> straight_lines;  // between the even soaks
   std::vector<TradeOff> trade_offs;
-  std::vector<SoakPlan> candidates;   // of the user
-  ChamberTime time;                   // of the chosen plan
-  RowRule rule;                       // of rows that are trained on
-  TemperatureRange range;             // [degC], of the chamber
-  std::vector<std::string> observed;  // "bias" and channels
-  int devices = 0;                    // of the population
-  int devices_tried = 0;              // of those, with coefficients
+  std::vector<SoakPlan> candidates;        // of the user
+  std::vector<Extrapolated> extrapolated;  // by the chosen plan
+  ChamberTime time;                        // of the chosen plan
+  RowRule rule;                            // of rows that are trained on
+  TemperatureRange range;                  // [degC], of the chamber
+  std::vector<std::string> observed;       // "bias" and channels
+  int devices = 0;                         // of the population
+  int devices_tried = 0;                   // of those, with coefficients
   ForecastBasis basis = ForecastBasis::kGaussian;
   std::vector<std::string> warnings;
 };

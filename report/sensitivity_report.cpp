@@ -116,6 +116,24 @@ std::string share_text(const DeviceShare& share) {
                                  100 * share.interval.high));
 }
 
+std::string width_text(const std::optional<double>& width) {
+  return width ? fmt::format("{:.2f}", *width)
+               : fmt::format("under {:g}", kNarrowest);
+}
+
+std::string needed_table(const YieldResult& yield, std::size_t width) {
+  if (!yield.target) return "";
+  std::string text = fmt::format(
+      "Width of one tolerance for a yield of {:g} %, of what it is:\n",
+      100 * *yield.target);
+  for (const NeededWidth& needed : yield.needed)
+    fmt::format_to(std::back_inserter(text), "{} {:>10} {:>20}\n",
+                   key_cell(needed.key, width), width_text(needed.width),
+                   fmt::format("{} .. {}", width_text(needed.narrow),
+                               width_text(needed.wide)));
+  return text;
+}
+
 std::string yield_table(const MeritResult& result) {
   const YieldResult& yield = *result.yield;
   std::size_t width = 11;
@@ -132,7 +150,13 @@ std::string yield_table(const MeritResult& result) {
     fmt::format_to(
         out, "{} {}\n", key_cell(halved.key + "/2", width),
         halved.share ? share_text(*halved.share) : fmt::format("{:>8}", "-"));
-  return text;
+  if (!yield.pairs.empty()) text += "Two of them at once:\n";
+  for (const PairYield& pair : yield.pairs)
+    fmt::format_to(
+        out, "{} {}\n",
+        key_cell(fmt::format("{}/2, {}/2", pair.first, pair.second), width),
+        share_text(pair.share));
+  return text + needed_table(yield, width);
 }
 
 nlohmann::ordered_json interval_json(const IndexEstimate& index) {
@@ -151,11 +175,29 @@ nlohmann::ordered_json yield_json(const YieldResult& yield) {
     }
     halved.push_back(entry);
   }
+  const auto number = [](const std::optional<double>& value) {
+    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+  };
+  nlohmann::ordered_json pairs = nlohmann::ordered_json::array();
+  for (const PairYield& pair : yield.pairs)
+    pairs.push_back({{"keys", {pair.first, pair.second}},
+                     {"yield", pair.share.value},
+                     {"yield_interval",
+                      {pair.share.interval.low, pair.share.interval.high}}});
+  nlohmann::ordered_json needed = nlohmann::ordered_json::array();
+  for (const NeededWidth& each : yield.needed)
+    needed.push_back(
+        {{"key", each.key},
+         {"width", number(each.width)},
+         {"width_interval", {number(each.narrow), number(each.wide)}}});
   return {
       {"limit", yield.limit},
       {"as_is", yield.as_is.value},
       {"as_is_interval", {yield.as_is.interval.low, yield.as_is.interval.high}},
-      {"halved", halved}};
+      {"halved", halved},
+      {"pairs", pairs},
+      {"target", number(yield.target)},
+      {"needed", needed}};
 }
 
 nlohmann::ordered_json merit_json(const MeritResult& result) {

@@ -25,8 +25,10 @@ struct Block {
   int cycle;  // of the run
 };
 
-// Blocks of one run, counted anew from each power-on.
-std::vector<Block> row_blocks_of(const Recording& recording, double seconds) {
+// Blocks of one run, counted anew from each power-on. Those that begin sooner
+// than `after` [s] are left out.
+std::vector<Block> row_blocks_of(const Recording& recording, double seconds,
+                                 double after) {
   std::vector<Block> blocks;
   bool powered = false;
   double start = 0.0;  // [s]
@@ -48,6 +50,8 @@ std::vector<Block> row_blocks_of(const Recording& recording, double seconds) {
     if (!powered || block != number) blocks.push_back({{}, cycle});
     powered = true;
     number = block;
+    const double begin = seconds > 0.0 ? block * seconds : time - start;
+    if (begin < after) continue;
     if ((status & (kOutputSaturated | kLoopNotLocked)) == 0)
       blocks.back().samples.push_back(static_cast<Index>(k));
   }
@@ -167,11 +171,16 @@ class RowCollector {
   void add(const TrainingRun& run, const std::vector<Input>& inputs) {
     const Recording& recording = run.recording;
     const ArrayXXd features = features_of(inputs, recording, clamp_);
-    const std::vector<Block> blocks =
-        row_blocks_of(recording, options_.seconds);
+    const std::vector<Block> blocks = row_blocks_of(
+        recording, options_.seconds, options_.after_power_on_min * kMinute);
     if (blocks.empty())
-      throw std::invalid_argument(
-          "no sample is powered, locked and not saturated");
+      throw std::invalid_argument(fmt::format(
+          "no sample is powered, locked and not saturated{}",
+          options_.after_power_on_min > 0.0
+              ? fmt::format(" later than {:g} min after power-on "
+                            "(after_power_on_min of the model file)",
+                            options_.after_power_on_min)
+              : ""));
     const auto column = [&](const char* name) {
       return array_view(column_values(recording, name));
     };

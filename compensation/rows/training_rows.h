@@ -22,6 +22,8 @@ struct RowOptions {
   // [min]; a row has the temperature at which the sensor would settle with the
   // beam as it is, T - lag dT/dt
   double lag_min = 0.0;
+  // [min]; rows that begin earlier after a power-on are left out
+  double after_power_on_min = 0.0;
 };
 
 /// Means over blocks of samples, to which models are fitted.
@@ -56,7 +58,8 @@ constexpr double kLegReversal = 2.0;  // [K]
 /// the sample rate of the recording. They and the label, rate - true_rate, are
 /// then averaged over consecutive blocks of `options.seconds` (0: every sample
 /// is a block), counted from each power-on.
-/// - Samples without power, saturated or with a loop not locked are left out.
+/// - Samples without power, saturated or with a loop not locked are left out,
+///   and with after_power_on_min blocks that begin earlier after a power-on.
 /// - Blocks with less than half the samples of the fullest block of their run
 ///   are left out, and with steady_K_per_min also blocks over which the
 ///   measured temperature changes faster (slope of a straight line). Of those

@@ -61,6 +61,8 @@ RowOptions read_rows(const ConfigTable& table, const std::string& kind) {
                "seconds is 0");
   if (table.has("lag_min") && kind != AdaptedSpec::kName)
     table.fail("lag_min", "is for the kind \"adapted\" alone");
+  rows.after_power_on_min =
+      table.number_or("after_power_on_min", 0.0, non_negative());
   return rows;
 }
 

@@ -24,7 +24,8 @@ struct PlanOptions {
   std::optional<double> residual_deg_per_s = {};  ///< median rms at most
   /// Over which the residual counts; what the population knows without.
   std::optional<ChamberRange> range_degC = {};
-  /// At which a soak may be; the range without.
+  /// At which a soak may be; the range without. Where it is narrower than the
+  /// range, the population extrapolates.
   std::optional<ChamberRange> chamber_degC = {};
   std::optional<double> ramp_K_per_min = {};  ///< 2 without
   std::optional<double> start_degC = {};      ///< 25 without
@@ -33,6 +34,9 @@ struct PlanOptions {
   /// Soaks of your own [degC], to be compared.
   std::vector<std::vector<double>> candidates = {};
   bool bias_only = false;  ///< soaks that observe the bias, but no channel
+  /// Counts on the row that a ramp down from the start shows minutes after
+  /// power-on, which needs device and chamber at the start temperature then.
+  bool start_row = false;
   /// How the schedule names its device file; the name of the device without.
   std::string device_name = {};
 };
@@ -69,7 +73,7 @@ struct SoakPlanResult {
 /// trained as a population; `device` tells how warm the sensor is, how long a
 /// soak lasts and what noise it shows. Throws std::invalid_argument for another
 /// compensator, a device with an oven, no goal or several, a goal that cannot
-/// be met and a range outside the chamber.
+/// be met and a chamber at temperatures that the population does not know.
 SoakPlanResult plan(const Compensator& population, const Device& device,
                     const PlanOptions& options);
 

@@ -28,6 +28,9 @@ struct SensitivityOptions {
   bool linear = false;
   /// Largest magnitudes that are good, by figure; they add yields.
   std::map<std::string, double> limits = {};
+  /// Share of good devices that is wanted of each limit, in (0, 1): adds how
+  /// narrow single tolerances have to be for it.
+  std::optional<double> yield = {};
   /// Each takes a device for every tolerance and three more; 32 to 1,000,000.
   std::size_t samples = 2048;
   std::optional<std::uint64_t> seed = {};  ///< that of the campaign without

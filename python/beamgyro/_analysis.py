@@ -92,7 +92,8 @@ def _candidates(value: Any, name: str) -> list[list[float]]:
 
 
 _PLAN_OPTIONS: dict[str, Callable[[Any, str], Any]] = {
-    "bias_only": _checks.flag, "soaks": _arguments.count,
+    "bias_only": _checks.flag, "start_row": _checks.flag,
+    "soaks": _arguments.count,
     "hold_min": _arguments.count, "hours": _arguments.number,
     "residual_deg_per_s": _arguments.number,
     "ramp_K_per_min": _arguments.number, "start_degC": _arguments.number,
@@ -109,7 +110,7 @@ def plan(population: Union[Compensator, Path], device: DeviceLike, *,
          start_degC: Optional[float] = None,
          hold_min: Optional[int] = None,
          candidates: Optional[Sequence[Sequence[float]]] = None,
-         bias_only: bool = False) -> PlanResult:
+         bias_only: bool = False, start_row: bool = False) -> PlanResult:
     """Plan the soaks that a new device of a population needs.
 
     Args:
@@ -124,6 +125,8 @@ def plan(population: Union[Compensator, Path], device: DeviceLike, *,
         hold_min: the length of a soak in whole minutes.
         candidates: soaks of your own to compare.
         bias_only: soaks observe the bias, but no channel.
+        start_row: counts on the row that a ramp down from the start shows
+            minutes after power-on.
 
     Raises:
         ValueError: the compensator is no population, or something is wrong
@@ -131,7 +134,8 @@ def plan(population: Union[Compensator, Path], device: DeviceLike, *,
     """
     unit = device_of(device)
     options = _checks.given(
-        _PLAN_OPTIONS, bias_only=bias_only, soaks=soaks, hold_min=hold_min,
+        _PLAN_OPTIONS, bias_only=bias_only, start_row=start_row,
+        soaks=soaks, hold_min=hold_min,
         hours=hours, residual_deg_per_s=residual_deg_per_s,
         ramp_K_per_min=ramp_K_per_min, start_degC=start_degC,
         range_degC=range_degC, chamber_degC=chamber_degC,
@@ -159,6 +163,7 @@ def sensitivity(campaign: CampaignLike, *, figures: Sequence[str] = (),
                 compensator: Optional[Any] = None,
                 range_degC: Range = (-40.0, 50.0), linear: bool = False,
                 limits: Optional[Mapping[str, float]] = None,
+                wanted_yield: Optional[float] = None,
                 samples: int = 2048, seed: Optional[int] = None,
                 jobs: int = 0, progress: ProgressArgument = False
                 ) -> SensitivityResult:
@@ -173,6 +178,8 @@ def sensitivity(campaign: CampaignLike, *, figures: Sequence[str] = (),
         range_degC: temperatures of the beam.
         linear: studies every figure as it is, not the logarithm.
         limits: largest good magnitudes by figure; they add yields.
+        wanted_yield: share of good devices, above 0 and below 1; adds how
+            narrow single tolerances have to be for it.
         samples: each takes a device for every tolerance and three more.
         seed: that of the campaign without.
         jobs: threads; 0: one for each core.
@@ -192,6 +199,8 @@ def sensitivity(campaign: CampaignLike, *, figures: Sequence[str] = (),
         "jobs": _arguments.jobs(jobs)}
     if seed is not None:
         options["seed"] = _arguments.seed(seed)
+    if wanted_yield is not None:
+        options["yield"] = _arguments.number(wanted_yield, "wanted_yield")
     if compensator is not None:
         options["compensator"] = compensator_of(compensator)._trained("file")
     with watched(progress, "studying") as function:

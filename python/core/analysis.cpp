@@ -192,6 +192,7 @@ py::tuple plan_soaks(const Compensator& population, const Device& device,
   take(given, "hold_min", options.hold_min);
   take(given, "candidates", options.candidates);
   take(given, "bias_only", options.bias_only);
+  take(given, "start_row", options.start_row);
   take(given, "device_name", options.device_name);
   const SoakPlanResult found =
       long_call(py::none(), [population, device, options](const Progress&) {
@@ -208,6 +209,7 @@ py::tuple study_sensitivity(const Campaign& campaign, const py::dict& given,
   take(given, "highest_degC", options.highest_degC);
   take(given, "linear", options.linear);
   take(given, "limits", options.limits);
+  take(given, "yield", options.yield);
   take(given, "samples", options.samples);
   take(given, "seed", options.seed);
   take(given, "jobs", options.jobs);

@@ -36,6 +36,31 @@ std::vector<std::size_t> first_joined(const DrawPlan& plan,
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
+struct DrawnMerits {
+  std::vector<double> values;  // none when it does not work
+  std::string failure;
+};
+
+DrawnMerits drawn_merits(const CampaignPlan& campaign, const DrawPlan& plan,
+                         std::vector<double> uniform,
+                         const DeviceSampleOptions& options,
+                         DeviceSampleCounts& counts) {
+  const VirtualDevice drawn = campaign.device_at(plan, std::move(uniform));
+  DrawnMerits found{{}, drawn.failure};
+  if (drawn.device) {
+    try {
+      found.values =
+          device_merits(*drawn.device, options.merits, options.merit);
+    } catch (const SimulationFailure& error) {
+      found.failure = error.what();
+    }
+  }
+  ++counts.devices;
+  if (counts.on_device) counts.on_device();
+  if (!found.failure.empty()) ++counts.failures;
+  return found;
+}
+
 class RowSampler {
  public:
   RowSampler(const CampaignPlan& campaign, const DeviceSampleOptions& options,
@@ -50,7 +75,7 @@ class RowSampler {
     for (std::size_t k = 0; k < plan_.draws.size(); ++k) {
       const Distribution& d = plan_.draws[k].distribution;
       if (d.kind != Distribution::Kind::kDiscrete)
-        halved_.emplace_back(k, with_halved(plan_, k));
+        halved_.emplace_back(k, with_narrowed(plan_, k, 0.5));
     }
     make_room();
   }
@@ -126,23 +151,12 @@ class RowSampler {
   template <class Place>
   void compute(std::size_t row, const DrawPlan& plan,
                std::vector<double> uniform, const Place& place) {
-    const VirtualDevice drawn = campaign_.device_at(plan, std::move(uniform));
-    std::string failure = drawn.failure;
-    if (drawn.device) {
-      try {
-        const std::vector<double> values =
-            device_merits(*drawn.device, options_.merits, options_.merit);
-        for (std::size_t m = 0; m < values.size(); ++m)
-          *place(sample_.merits[m]) = values[m];
-      } catch (const SimulationFailure& error) {
-        failure = error.what();
-      }
-    }
-    ++counts_.devices;
-    if (counts_.on_device) counts_.on_device();
-    if (failure.empty()) return;
-    ++counts_.failures;
-    if (failures_[row].empty()) failures_[row] = std::move(failure);
+    auto [values, failure] =
+        drawn_merits(campaign_, plan, std::move(uniform), options_, counts_);
+    for (std::size_t m = 0; m < values.size(); ++m)
+      *place(sample_.merits[m]) = values[m];
+    if (!failure.empty() && failures_[row].empty())
+      failures_[row] = std::move(failure);
   }
 
   const CampaignPlan& campaign_;
@@ -190,9 +204,9 @@ void require_comparable(const std::vector<Factor>& factors,
                                     factors.front().key)));
 }
 
-DrawPlan with_halved(DrawPlan plan, std::size_t index) {
+DrawPlan with_narrowed(DrawPlan plan, std::size_t index, double share) {
   Distribution& distribution = plan.draws[index].distribution;
-  distribution = halved(distribution);
+  distribution = narrowed(distribution, share);
   return plan;
 }
 
@@ -229,6 +243,35 @@ DeviceSample sample_devices(const CampaignPlan& campaign,
     break;
   }
   return sample;
+}
+
+std::vector<std::vector<double>> narrowed_merits(
+    const CampaignPlan& campaign, const DeviceSampleOptions& options,
+    const std::vector<Narrowing>& narrowings, DeviceSampleCounts& counts) {
+  std::vector<DrawPlan> plans;
+  for (const auto& [draws, share] : narrowings) {
+    plans.push_back(campaign.device_plan);
+    for (const std::size_t draw : draws)
+      plans.back() = with_narrowed(std::move(plans.back()), draw, share);
+  }
+  counts.all_devices += plans.size() * options.rows;
+  const std::size_t numbers = campaign.device_plan.parameters.size();
+  const ScrambledSobol sobol(2 * numbers, options.seed);
+  std::vector<std::vector<double>> found(
+      plans.size(), std::vector<double>(options.rows, kNone));
+  for_each_task(options.rows, thread_count(options.jobs),
+                [&](std::size_t row, std::size_t) {
+                  std::vector<double> a(numbers);
+                  for (std::size_t n = 0; n < numbers; ++n)
+                    a[n] = sobol.at(static_cast<std::uint32_t>(row), n);
+                  for (std::size_t k = 0; k < plans.size(); ++k) {
+                    const DrawnMerits drawn =
+                        drawn_merits(campaign, plans[k], a, options, counts);
+                    if (!drawn.values.empty())
+                      found[k][row] = drawn.values.front();
+                  }
+                });
+  return found;
 }
 
 }  // namespace beamgyro::internal

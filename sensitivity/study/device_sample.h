@@ -30,8 +30,8 @@ std::vector<Factor> factors_of(const DrawPlan& plan);
 void require_comparable(const std::vector<Factor>& factors,
                         const std::string& campaign);
 
-/// Returns the plan with draw `index` of half its width (halved()).
-DrawPlan with_halved(DrawPlan plan, std::size_t index);
+/// Returns the plan with draw `index` of `share` of its width (narrowed()).
+DrawPlan with_narrowed(DrawPlan plan, std::size_t index, double share);
 
 struct DeviceSampleOptions {
   std::vector<Merit> merits;
@@ -87,5 +87,19 @@ std::uint64_t devices_of_sample(const CampaignPlan& campaign,
 DeviceSample sample_devices(const CampaignPlan& campaign,
                             const DeviceSampleOptions& options,
                             DeviceSampleCounts& counts);
+
+/// Tolerances that are narrowed together, each to `share` of its width.
+struct Narrowing {
+  std::vector<std::size_t> draws;  // indices of DeviceSample::keys
+  double share;                    // (0, 1]
+};
+
+/// Returns the first figure of `options` of the devices at the rows of A, with
+/// narrowed tolerances: one row of values for each narrowing, NaN for a device
+/// that does not work. The devices are those of sample_devices() and are added
+/// to the counts.
+std::vector<std::vector<double>> narrowed_merits(
+    const CampaignPlan& campaign, const DeviceSampleOptions& options,
+    const std::vector<Narrowing>& narrowings, DeviceSampleCounts& counts);
 
 }  // namespace beamgyro::internal

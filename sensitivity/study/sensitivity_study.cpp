@@ -37,14 +37,6 @@ std::array<double, 3> quantiles_of(std::vector<double> values) {
           percentile(values, 0.95)};
 }
 
-DeviceShare share_within(const std::vector<double>& values, double limit) {
-  const auto passed = static_cast<double>(
-      std::count_if(values.begin(), values.end(),
-                    [&](double value) { return std::abs(value) <= limit; }));
-  const auto count = static_cast<double>(values.size());
-  return {passed / count, clopper_pearson(passed, count)};
-}
-
 YieldResult yield_of(const DeviceSample& sample, const MeritSample& values,
                      double limit) {
   YieldResult yield{limit, share_within(values.design.a, limit), {}};
@@ -65,6 +57,14 @@ YieldResult yield_of(const DeviceSample& sample, const MeritSample& values,
 }
 
 }  // namespace
+
+DeviceShare share_within(const std::vector<double>& values, double limit) {
+  const auto passed = static_cast<double>(
+      std::count_if(values.begin(), values.end(),
+                    [&](double value) { return std::abs(value) <= limit; }));
+  const auto count = static_cast<double>(values.size());
+  return {passed / count, clopper_pearson(passed, count)};
+}
 
 MeritResult analysed(const DeviceSample& sample, std::size_t index,
                      const MeritQuestion& question, std::uint64_t seed) {

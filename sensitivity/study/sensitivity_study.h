@@ -34,13 +34,37 @@ struct HalvedYield {
   std::optional<DeviceShare> share;  // none for a choice, which has no half
 };
 
+struct PairYield {
+  std::string first, second;  // keys
+  DeviceShare share;          // with both halved
+};
+
+/// How narrow one tolerance has to be, as a share of its width, so that a share
+/// of the devices is good while all others stay as they are.
+struct NeededWidth {
+  std::string key;
+  std::optional<double> width;  // none: not even at kNarrowest
+  // Of the widths at which the ends of the intervals of the yield are what is
+  // wanted: the narrower one is certain to do.
+  std::optional<double> narrow, wide;
+};
+
+constexpr double kNarrowest = 0.125;
+
 /// Shares of devices whose figure has a magnitude of at most `limit`. Devices
 /// that do not work do not meet it.
 struct YieldResult {
   double limit = 0;
   DeviceShare as_is;
-  std::vector<HalvedYield> halved;  // the largest share first
+  std::vector<HalvedYield> halved;    // the largest share first
+  std::vector<PairYield> pairs = {};  // likewise, of those that help most
+  std::optional<double> target = {};
+  std::vector<NeededWidth> needed = {};  // of those that help most
 };
+
+/// Returns the share of devices whose figure has a magnitude of at most
+/// `limit`.
+DeviceShare share_within(const std::vector<double>& values, double limit);
 
 struct MeritResult {
   Merit merit{};

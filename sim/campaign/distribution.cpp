@@ -82,24 +82,24 @@ double share_inside(const Distribution& d) {
   return normal_cumulative(ends.high) - normal_cumulative(ends.low);
 }
 
-Distribution halved(const Distribution& d) {
+Distribution narrowed(const Distribution& d, double share) {
   using Kind = Distribution::Kind;
-  Distribution half = d;
-  half.sigma = 0.5 * d.sigma;
+  Distribution narrow = d;
+  narrow.sigma = share * d.sigma;
   if (d.kind == Kind::kNormal || d.kind == Kind::kUniform) {
     const double centre =
         d.kind == Kind::kNormal ? d.centre : 0.5 * (d.low + d.high);
-    half.low = centre + 0.5 * (d.low - centre);
-    half.high = centre + 0.5 * (d.high - centre);
+    narrow.low = centre + share * (d.low - centre);
+    narrow.high = centre + share * (d.high - centre);
   } else if (d.kind == Kind::kLognormal) {
-    // The root of the ratio; a limit at or below 0 cuts nothing off.
+    // A power of the ratio; a limit at or below 0 cuts nothing off.
     const auto nearer = [&](double end) {
-      return end <= 0 ? end : d.centre * std::sqrt(end / d.centre);
+      return end <= 0 ? end : d.centre * std::pow(end / d.centre, share);
     };
-    half.low = nearer(d.low);
-    half.high = nearer(d.high);
+    narrow.low = nearer(d.low);
+    narrow.high = nearer(d.high);
   }
-  return half;
+  return narrow;
 }
 
 double quantile(const Distribution& d, double u) {

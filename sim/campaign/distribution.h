@@ -37,11 +37,11 @@ std::vector<double> poisson_weights(double mean, int most);
 /// 1/2 gives the negative values, and the magnitude grows with u on both sides.
 double quantile(const Distribution& distribution, double u);
 
-/// Returns the distribution of half the width: every value half as far from the
-/// centre, of kLognormal in its logarithm, so that limits move inwards as well.
-/// The centre is the mean of kNormal, the median of kLognormal and the middle
-/// of kUniform. Returns kDiscrete as it is.
-Distribution halved(const Distribution& distribution);
+/// Returns the distribution of `share` > 0 of the width: every value that much
+/// nearer to the centre, of kLognormal in its logarithm, so that limits move
+/// inwards as well. The centre is the mean of kNormal, the median of kLognormal
+/// and the middle of kUniform. Returns kDiscrete as it is.
+Distribution narrowed(const Distribution& distribution, double share);
 
 /// Returns the probability that the uncut distribution gives a value between
 /// `low` and `high`; 1 for kUniform and kDiscrete.

@@ -148,27 +148,6 @@ TEST(StraightLines, OneSoakIsAConstant) {
   }
 }
 
-TEST(RatioOfMedians, HasAnIntervalOfTheDevices) {
-  const SoakModel model = model_of(small_population(200));
-  const ResidualDraws lines = straight_line_draws(model, {2.0, 20.0});
-  ResidualDraws halves = lines;
-  for (double& rms : halves.rms) rms *= 0.5;
-  const MedianRatio exact = ratio_of_medians(halves, lines);
-  EXPECT_EQ(exact.value, 0.5);
-  EXPECT_EQ(exact.interval.low, 0.5);
-  EXPECT_EQ(exact.interval.high, 0.5);
-
-  const auto width = [](int devices) {
-    const SoakModel of = model_of(small_population(devices));
-    const auto [low, high] =
-        ratio_of_medians(residual_draws(of, {2.0, 20.0}),
-                         straight_line_draws(of, {2.0, 20.0}))
-            .interval;
-    return high - low;
-  };
-  EXPECT_GT(width(20), 2.0 * width(800));
-}
-
 TEST(SlowNoiseRoot, WalksInTheOrderOfTheVisits) {
   // From 20 degC first to 30, then to 0: an hour of hold each, 10 K and 30 K.
   const Eigen::MatrixXd L = slow_noise_root(

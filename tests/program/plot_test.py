@@ -333,10 +333,11 @@ class Sets(PlotTest):
         self.ok("plan", "population.json", "--soaks", "3", "--json", "plan.json",
                 "--picture", "drawn by plan.svg")
         svg = self.picture("plan.json")
-        self.says(svg, "What soaks buy", "rms left [°/s]", "this schedule")
+        self.says(svg, "What soaks buy", "rms left [°/s]", "this schedule",
+                  "straight lines, even: median")
         self.assertEqual(curves(svg),
                          curves(self.dir / "drawn by plan.svg"))
-        self.assertEqual(len(curves(svg)), 5)
+        self.assertEqual(len(curves(svg)), 7)
 
 
 class Refusals(PlotTest):

@@ -35,9 +35,9 @@ class Sensitivity(ProgramTest):
         self.write("rest.toml", SCENARIO)
         self.write("c.toml", CAMPAIGN.format(more=""))
 
-    def found(self, *arguments):
+    def found(self, *arguments, samples=256):
         """Printed text, and what the JSON file says."""
-        text = self.ok("sensitivity", "c.toml", "--samples", 256, "--json",
+        text = self.ok("sensitivity", "c.toml", "--samples", samples, "--json",
                        "s.json", *arguments)
         return text, self.json("s.json")
 
@@ -87,6 +87,35 @@ class Sensitivity(ProgramTest):
         first = found["figures"][PP]["indices"][0]["key"]
         self.assertGreater(halved[first], good["as_is"])
         self.assertEqual(good["halved"][0]["key"], first)
+
+    def test_two_tolerances_at_once_and_the_width_for_a_yield(self):
+        text, found = self.found("--figure", PP)
+        limit = found["figures"][PP]["median"]
+        text, found = self.found("--figure", PP, "--limit", f"{PP}={limit}",
+                                 "--yield", "0.7", samples=1024)
+        good = found["figures"][PP]["yield"]
+        self.assertEqual(len(good["pairs"]), 3)
+        best = max(each["yield"] for each in good["halved"])
+        self.assertGreater(good["pairs"][0]["yield"], best)
+        self.assertEqual(set(good["pairs"][0]["keys"]), {
+            "mount.axis_angle_deg", "readout.offset_tc_deg_per_s_per_K"})
+        self.assertIn("Two of them at once:\n", text)
+        self.assertIn("Width of one tolerance for a yield of 70 %", text)
+        width = {each["key"]: each["width"] for each in good["needed"]}
+        self.assertIsNone(width[TURN_ON])
+        self.assertEqual(good["target"], 0.7)
+        first = good["needed"][0]
+        narrow, wide = first["width_interval"]
+        self.assertTrue(0.125 < narrow < first["width"] < wide < 1)
+        # A campaign with that tolerance, of other devices, has the yield.
+        self.assertEqual(first["key"], "mount.axis_angle_deg")
+        self.write("c.toml", CAMPAIGN.format(more="").replace(
+            "sigma = 2.5", f"sigma = {2.5 * first['width']}"))
+        _, again = self.found("--figure", PP, "--limit", f"{PP}={limit}",
+                              "--seed", "77", samples=1024)
+        # Three standard deviations of two shares of 1024.
+        self.assertAlmostEqual(again["figures"][PP]["yield"]["as_is"], 0.7,
+                               delta=3 * (2 * 0.21 / 1024) ** 0.5)
 
     def test_a_figure_as_it_is_has_other_indices_than_its_logarithm(self):
         _, logarithm = self.found("--figure", PP)
@@ -189,6 +218,8 @@ class Sensitivity(ProgramTest):
         refused("--limit", "bias=2", says="--limit bias")
         refused("--limit", f"{PP}=much", says="--limit much")
         refused("--limit", f"{PP}=0", says="--limit 0")
+        refused("--yield", "0.9", says="yield 0.9 of no limit")
+        refused("--limit", f"{PP}=2", "--yield", "1", says="--yield 1")
         refused("--limit", f"{PP}=2", "--limit", f"{PP}=3", says="already")
         refused("--limit", f"{PP}=2", "--figure", FIGURES[1],
                 says=f"limit 2 of {PP}, which is not studied")

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import style
-from .documents import NUMBER, POSITIVE, RANGE, TEXT, record, rows
+from .documents import NUMBER, POSITIVE, RANGE, TEXT, maybe, record, rows
 
 HEIGHT = 4.8
 _FORECAST = record({"median": POSITIVE, "p95": POSITIVE})
@@ -17,7 +17,8 @@ _CANDIDATE = record({"hours": NUMBER, "expected_rms_deg_per_s": _FORECAST})
 _SOAKS = record({"hours": NUMBER, "expected_rms_deg_per_s": _FORECAST,
                  "temperatures_degC": rows(NUMBER)})
 SHAPE = record({
-    "trade_off": rows(record({"even": _SOAKS, "planned": _SOAKS}), 1),
+    "trade_off": rows(record({"even": _SOAKS, "planned": _SOAKS},
+                             {"straight_lines": maybe(_FORECAST)}), 1),
     "candidates": rows(_CANDIDATE),
     "schedule": record({"hours": NUMBER, "temperatures_degC": rows(NUMBER)}),
     "expected_rms_deg_per_s": _FORECAST,
@@ -40,9 +41,17 @@ def _curve(axes: Axes, plans: Sequence[Mapping[str, Any]], color: str,
                       color=style.WORDS)
 
 
+def _lines(table: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """What straight lines between the even soaks leave, as plans."""
+    return [{**row["even"], "expected_rms_deg_per_s": row["straight_lines"]}
+            for row in table if row.get("straight_lines")]
+
+
 def draw(figure: Figure, plan: Mapping[str, Any]) -> None:
     axes = figure.subplots()
     table = plan["trade_off"]
+    if lines := _lines(table):
+        _curve(axes, lines, style.GREY, "^", "straight lines, even")
     _curve(axes, [row["even"] for row in table], style.ORANGE, "s",
            "even spacing")
     _curve(axes, [row["planned"] for row in table], style.BLUE, "o", "planned")
@@ -57,7 +66,7 @@ def draw(figure: Figure, plan: Mapping[str, Any]) -> None:
     style.log_scale(axes.yaxis, (1, 2, 5))
     axes.set(xlabel="time in the chamber [h] (numbers: soaks)",
              ylabel="rms left [°/s]")
-    axes.legend(loc="upper right")
+    axes.legend(loc="best")
     low, high = plan["range_degC"]
     soaks = ", ".join(f"{T:g}" for T in chosen["temperatures_degC"])
     style.titled(figure, f"What soaks buy, {low:g} to {high:g} °C",

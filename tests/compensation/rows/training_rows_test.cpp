@@ -112,6 +112,21 @@ TEST(TrainingRows, HaveTheTemperatureThatTheSensorWouldSettleTo) {
   EXPECT_LT((rows.inputs.col(0) - rows.temperature).abs().maxCoeff(), 1e-12);
 }
 
+TEST(TrainingRows, OfTheMinutesAfterEachPowerOnMayBeLeftOut) {
+  RecordedRun run{.duration = 1800.0, .step = 10.0};
+  run.powered = [](double t) { return t < 600.0 || t >= 660.0; };
+  RowOptions options;
+  options.after_power_on_min = 5.0;
+  const TrainingRows rows = rows_from(run.recording(), options);
+  // Of two cycles of 10 and 19 minutes, each without its first five.
+  ASSERT_EQ(rows.size(), 5 + 14);
+  EXPECT_EQ(rows.time(0), 325.0);
+  EXPECT_EQ(rows.time(5), 660.0 + 325.0);
+  options.after_power_on_min = 40.0;
+  EXPECT_TRUE(holds(rejection([&] { rows_from(run.recording(), options); }),
+                    "later than 40 min after power-on"));
+}
+
 TEST(TrainingRows, BadRunsAreNamedWithWhatIsWrong) {
   const Recording good = drifting_run().recording();
   const auto message = [](const Recording& recording) {

@@ -138,6 +138,8 @@ const Wrong kWrong[] = {
     {"kind = \"bp\"\n[bp]\nhidden = [6]\n", "inputs"},
     {"kind = \"px4\"\nrows = { steady_K_per_min = 1 }\n", "seconds is 0"},
     {"kind = \"spline\"\nrows = { lag_min = 7 }\n", "\"adapted\" alone"},
+    {"kind = \"spline\"\nrows = { after_power_on_min = -1 }\n",
+     "after_power_on_min"},
     {"kind = \"bp\"\ninputs = [\"temperature\"]\n[bp]\nhidden = "
      "[6]\nrate_penalty = 1\n",
      "do not feel the rate"},

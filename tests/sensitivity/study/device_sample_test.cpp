@@ -39,7 +39,7 @@ double merit_at(const CampaignPlan& campaign, const DrawPlan& plan,
   return device_merits(*campaign.device_at(plan, u).device, merits, {})[0];
 }
 
-TEST(DeviceSample, RowsAreTheHalvesOfASobolPoint) {
+TEST(DeviceSample, RowsAreTheNarrowesOfASobolPoint) {
   const CampaignFolder folder;
   const CampaignPlan campaign = folder.campaign(with_tolerances(kTolerances));
   const DeviceSampleOptions options = options_of(4, 1);
@@ -55,8 +55,9 @@ TEST(DeviceSample, RowsAreTheHalvesOfASobolPoint) {
   EXPECT_EQ(design.b[2], merit_at(campaign, plan, {at(3), at(4), at(5)}));
   EXPECT_EQ(design.ab[1][2], merit_at(campaign, plan, {at(0), at(4), at(2)}));
   EXPECT_EQ(design.ab[2][2], design.a[2]);  // bits do not touch the bias
-  EXPECT_EQ(sample.merits[0].halved[1][2],
-            merit_at(campaign, with_halved(plan, 1), {at(0), at(1), at(2)}));
+  EXPECT_EQ(
+      sample.merits[0].halved[1][2],
+      merit_at(campaign, with_narrowed(plan, 1, 0.5), {at(0), at(1), at(2)}));
   EXPECT_TRUE(sample.merits[0].halved[2].empty());
   EXPECT_EQ(sample.merits[0].independent[2],
             merit_at(campaign, plan,
@@ -121,7 +122,7 @@ TEST(DeviceSample, ADeviceThatCannotBeTrimmedIsCounted) {
   EXPECT_TRUE(holds(sample.first_failure, "quadrature trim"));
 }
 
-TEST(HalvedDistribution, EveryValueIsHalfAsFarFromTheCentre) {
+TEST(NarrowedDistribution, EveryValueIsThatMuchNearerToTheCentre) {
   Distribution normal, lognormal, uniform;
   normal.kind = Distribution::Kind::kNormal;
   normal.centre = 5;
@@ -133,14 +134,15 @@ TEST(HalvedDistribution, EveryValueIsHalfAsFarFromTheCentre) {
   lognormal.high = 7;
   uniform.low = 3;
   uniform.high = 7;
-  for (const double u : {0.01, 0.3, 0.5, 0.9}) {
-    EXPECT_NEAR(quantile(halved(normal), u),
-                5 + 0.5 * (quantile(normal, u) - 5), 1e-12);
-    EXPECT_NEAR(quantile(halved(uniform), u),
-                5 + 0.5 * (quantile(uniform, u) - 5), 1e-12);
-    EXPECT_NEAR(std::log(quantile(halved(lognormal), u) / 5),
-                0.5 * std::log(quantile(lognormal, u) / 5), 1e-12);
-  }
+  for (const double share : {0.5, 0.125})
+    for (const double u : {0.01, 0.3, 0.5, 0.9}) {
+      EXPECT_NEAR(quantile(narrowed(normal, share), u),
+                  5 + share * (quantile(normal, u) - 5), 1e-12);
+      EXPECT_NEAR(quantile(narrowed(uniform, share), u),
+                  5 + share * (quantile(uniform, u) - 5), 1e-12);
+      EXPECT_NEAR(std::log(quantile(narrowed(lognormal, share), u) / 5),
+                  share * std::log(quantile(lognormal, u) / 5), 1e-12);
+    }
 }
 
 }  // namespace
