@@ -53,6 +53,16 @@ std::vector<std::string> range_warnings(const RateCompensator& compensator,
                              "distance")};
 }
 
+std::vector<std::string> sigma_warnings(const CompensatorSource& source,
+                                        const Recording& recording,
+                                        const std::string& name) {
+  if (!source.trained || !source.trained->sigma) return {};
+  std::vector<std::string> warnings =
+      reasons_against_sigma(source.trained->sigma->validity, recording);
+  for (std::string& warning : warnings) warning = name + ": " + warning;
+  return warnings;
+}
+
 void add_answer(const RateCompensator& compensator,
                 const CompensatorSource& source, CompensatedRate answer,
                 Recording& recording) {
@@ -85,6 +95,8 @@ CompensatedRun compensated(const RateCompensator& compensator,
   if (!faults.empty()) return {};
   std::vector<std::string> warnings =
       range_warnings(compensator, source, answer, name);
+  for (std::string& warning : sigma_warnings(source, recording, name))
+    warnings.push_back(std::move(warning));
   add_answer(compensator, source, std::move(answer), recording);
   return {std::move(recording), std::move(warnings)};
 }

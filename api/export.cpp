@@ -139,11 +139,13 @@ void c_texts(const ExportRequest& asked, const std::string& name,
 
 // Before a long recording is read.
 void require_sigma(const ExportRequest& asked) {
-  if (!compensator_of(asked, 0).sigma)
+  const FittedCompensator& c = compensator_of(asked, 0);
+  if (!c.sigma)
     throw std::invalid_argument(fmt::format(
         "{}: states no sigma, from which the bias noise of a filter is "
-        "computed; expected a compensator with the member sigma",
-        file_of(asked, 0)));
+        "computed{}; expected a compensator with the member sigma",
+        file_of(asked, 0),
+        c.sigma_not_known.empty() ? "" : ": " + c.sigma_not_known));
 }
 
 void ekf_files(const ExportRequest& asked, const std::string& name,

@@ -54,6 +54,18 @@ std::vector<std::string> warnings_about(const Evidence& evidence) {
                            : fmt::format(" and {} more", unstated.size() - 1))};
 }
 
+// Why the sigma that a compensator states does not hold of runs.
+std::vector<std::string> warnings_about(const FittedCompensator* compensator,
+                                        const Evidence& evidence) {
+  std::vector<std::string> warnings;
+  if (compensator == nullptr || !compensator->sigma) return warnings;
+  for (const EvidenceRun& run : evidence.runs)
+    for (const std::string& reason :
+         reasons_against_sigma(compensator->sigma->validity, *run.recording))
+      warnings.push_back(fmt::format("{}: {}", run.name, reason));
+  return warnings;
+}
+
 // Said of code whose maker can know what it is judged on.
 constexpr std::string_view kPublicSeed =
     " Judged with the public seed of the qualification, whose runs code can "
@@ -227,6 +239,8 @@ CompletedValidation Validator::State::validated(
     for (std::string& text : warnings_about(done.evidence.before))
       result.warnings.push_back(std::move(text));
   }
+  for (std::string& text : warnings_about(known, done.evidence.after))
+    result.warnings.push_back(std::move(text));
   for (std::string& text : s.warnings_about_isolation())
     result.warnings.push_back(std::move(text));
   result.isolation = s.source.isolation;

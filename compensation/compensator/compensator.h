@@ -82,6 +82,9 @@ struct FittedCompensator {
   Provenance provenance;
   // 1-sigma of the bias that is left; nothing where training could not tell it.
   std::optional<BiasSigma> sigma = {};
+  // Why not, in words; empty with a sigma, of a method that never has one, and
+  // in files of older programs.
+  std::string sigma_not_known = {};
 };
 
 /// Returns the compensated rate [deg/s] of every sample, NaN where unpowered.

@@ -228,6 +228,11 @@ FittedCompensator read_root(const JsonNode& root) {
     c.population = read_population(root.at("population"));
   if (root.has("sigma"))
     c.sigma = read_sigma(root.at("sigma"), c.temperature_range);
+  if (root.has("sigma_not_known")) {
+    const JsonNode why = root.at("sigma_not_known");
+    if (c.sigma) why.fail("is there beside a sigma; expected one of the two");
+    c.sigma_not_known = why.text();
+  }
   c.provenance = read_provenance(root.at("training"));
   return c;
 }
@@ -252,6 +257,7 @@ std::string compensator_text(const FittedCompensator& compensator) {
   put_bias_model(c.baseline, json["baseline"]);
   if (c.population) json["population"] = population_json(*c.population);
   if (c.sigma) json["sigma"] = bias_sigma_json(*c.sigma);
+  if (!c.sigma_not_known.empty()) json["sigma_not_known"] = c.sigma_not_known;
   json["training"] = json_of(c.provenance);
   // A file name need not be UTF-8.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -51,6 +51,10 @@ std::string about(const FittedCompensator& c, const FirmwareParts& parts,
       ".\n   Largest difference from the workbench over that range: {:.2g} "
       "deg/s. */\n",
       difference);
+  if (!c.sigma_not_known.empty())
+    text += wrapped(fmt::format("/* States no sigma: {}. */",
+                                c_comment(c.sigma_not_known))) +
+            "\n";
   return text + warning_comments(p.warnings);
 }
 

@@ -8,7 +8,6 @@
 #include <map>
 
 #include "compensation/methods/bias_model.h"
-#include "dataset/recording/stated_values.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -220,11 +219,6 @@ std::vector<std::string> cautions(const FittedCase& fitted) {
                    ageing_caution(fitted)})
     if (!text.empty()) found.push_back(std::move(text));
   return found;
-}
-
-bool remembers_or_ages(const Recording& recording) {
-  return states_device_table(recording, "memory") ||
-         states_scenario_table(recording, "age");
 }
 
 double temperature_resolution(const Recording& recording) {

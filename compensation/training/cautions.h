@@ -26,7 +26,7 @@ struct FittedCase {
   const TrainingRows& held_out;   // may be empty
   double temperature_resolution;  // [K], the coarsest of the recordings
   bool knows_between = false;     // the model knows what lies between the rows
-  bool is_ageing = false;  // a device of the recordings, by remembers_or_ages()
+  bool is_ageing = false;         // a device of the recordings, by stated_age()
 };
 
 /// Returns one line for each claim that the data do not support:
@@ -44,10 +44,6 @@ std::vector<std::string> cautions(const FittedCase& fitted);
 /// Returns the smallest difference of two measured temperatures [K], or 0 when
 /// all are equal.
 double temperature_resolution(const Recording& recording);
-
-/// Returns whether a recording is of a device that remembers or ages, as its
-/// device file and scenario state: the tables [memory] and [age].
-bool remembers_or_ages(const Recording& recording);
 
 struct Hysteresis {
   double difference;      // [deg/s], largest of the bins

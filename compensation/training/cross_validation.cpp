@@ -41,18 +41,11 @@ RowMask covered_by_others(const TrainingRows& rows, const RowGroups& groups) {
   return covered;
 }
 
-struct Fold {
-  TrainingRows rows, unseen;
-};
-
-Fold fold_without(int group, const TrainingRows& rows,
-                  const RowGroups& groups) {
-  Fold fold;
-  fold.rows = selected(rows, groups.of_row != group);
-  fold.rows.range = {fold.rows.temperature.minCoeff(),
-                     fold.rows.temperature.maxCoeff()};
-  fold.unseen = selected(rows, groups.of_row == group);
-  return fold;
+TrainingRows without_group(int group, const TrainingRows& rows,
+                           const RowGroups& groups) {
+  TrainingRows others = selected(rows, groups.of_row != group);
+  others.range = {others.temperature.minCoeff(), others.temperature.maxCoeff()};
+  return others;
 }
 
 FitSpec as_in_fold(FitSpec kind, int cores) {
@@ -103,6 +96,16 @@ Predictions predict_unseen(const FitSpec& kind,
                            const std::vector<Input>& inputs,
                            const TrainingRows& rows, const RowGroups& groups,
                            std::uint64_t seed, int threads) {
+  return {predict_others(kind, inputs, rows, groups, rows, groups.of_row, seed,
+                         threads),
+          covered_by_others(rows, groups)};
+}
+
+ArrayXd predict_others(const FitSpec& kind, const std::vector<Input>& inputs,
+                       const TrainingRows& rows, const RowGroups& groups,
+                       const TrainingRows& asked,
+                       const Eigen::ArrayXi& group_of_asked, std::uint64_t seed,
+                       int threads) {
   if (groups.count < 2)
     throw std::invalid_argument(fmt::format(
         "cross-validation by {} needs two or more; the recordings have {}",
@@ -120,24 +123,25 @@ Predictions predict_unseen(const FitSpec& kind,
                          group + 1, error.what());
     };
     try {
-      const Fold fold = fold_without(group, rows, groups);
-      const Fit fit = fit_model(cheap, inputs, fold.rows, {}, seed);
-      of_group[static_cast<std::size_t>(group)] = fit.model.predict(
-          clamped(fold.unseen, inputs, fold.rows.range).inputs);
+      const TrainingRows others = without_group(group, rows, groups);
+      const Fit fit = fit_model(cheap, inputs, others, {}, seed);
+      of_group[k] = fit.model.predict(
+          clamped(selected(asked, group_of_asked == group), inputs,
+                  others.range)
+              .inputs.leftCols(static_cast<Index>(inputs.size())));
     } catch (const UndeterminedFit& error) {
       throw UndeterminedFit(without(error));
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(without(error));
     }
   });
-  Predictions predictions{ArrayXd(rows.size()),
-                          covered_by_others(rows, groups)};
+  ArrayXd bias(asked.size());
   std::vector<Index> next(of_group.size(), 0);
-  for (Index k = 0; k < rows.size(); ++k) {
-    const auto group = static_cast<std::size_t>(groups.of_row(k));
-    predictions.bias(k) = of_group[group](next[group]++);
+  for (Index k = 0; k < asked.size(); ++k) {
+    const auto group = static_cast<std::size_t>(group_of_asked(k));
+    bias(k) = of_group[group](next[group]++);
   }
-  return predictions;
+  return bias;
 }
 
 Predictions averaged(const Predictions& constant, const Predictions& model,

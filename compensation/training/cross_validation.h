@@ -59,6 +59,16 @@ Predictions predict_unseen(const FitSpec& kind,
                            const TrainingRows& rows, const RowGroups& groups,
                            std::uint64_t seed, int threads = 0);
 
+/// Returns the predicted bias [deg/s] of `asked`, rows of which each belongs to
+/// one of the groups, by the fits of predict_unseen() to all other groups. They
+/// may be of ramps and warm-ups that `rows` leaves out.
+Eigen::ArrayXd predict_others(const FitSpec& kind,
+                              const std::vector<Input>& inputs,
+                              const TrainingRows& rows, const RowGroups& groups,
+                              const TrainingRows& asked,
+                              const Eigen::ArrayXi& group_of_asked,
+                              std::uint64_t seed, int threads = 0);
+
 /// Returns the predictions (1 - weight) constant + weight model of the same
 /// rows.
 Predictions averaged(const Predictions& constant, const Predictions& model,

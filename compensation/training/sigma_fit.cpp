@@ -25,61 +25,11 @@ using Eigen::ArrayXd;
 using Eigen::ArrayXXd;
 using Eigen::Index;
 
-constexpr double kSigmaRowSeconds = 60.0;   // [s], where rows are samples
 constexpr double kDoublingDistance = 10.0;  // [K], at least, outside the range
 
 template <class... Kinds>
 bool is_one_of(const FitSpec& kind) {
   return (std::holds_alternative<Kinds>(kind) || ...);
-}
-
-// Rows of ramps and warm-ups, too; the last two columns are since_power_on and
-// temperature_rate.
-TrainingRows all_rows(const RunSource& runs, std::vector<Input> inputs,
-                      const SigmaTask& task, const TemperatureRange& range,
-                      const LookupTable* scale_factor) {
-  inputs.push_back({InputKind::kSincePowerOn, "", kSigmaTimeConstant});
-  inputs.push_back(
-      {InputKind::kTemperatureRate, "temperature", kSigmaTimeConstant});
-  const double seconds = task.options.seconds;
-  const RowOptions options{seconds > 0.0 ? seconds : kSigmaRowSeconds, {}};
-  return training_rows(runs, inputs, options, range, scale_factor);
-}
-
-// Groups of rows that share slow noise.
-std::pair<Eigen::ArrayXi, std::string> independent_groups(
-    const TrainingRows& rows, bool of_a_set) {
-  if (of_a_set) return {rows.device, "device"};
-  for (const Grouping by : {Grouping::kRun, Grouping::kCycle, Grouping::kLeg})
-    if (RowGroups groups = group_rows(rows, by); groups.count >= 2)
-      return {std::move(groups.of_row), grouping_name(by)};
-  return {rows.run, grouping_name(Grouping::kRun)};
-}
-
-// Residuals of `trained` within its temperatures, or in a warm-up, which may
-// lead to them.
-ResidualRows residuals_of(const FittedCompensator& trained,
-                          const RunSource& runs, const SigmaTask& task) {
-  const TrainingRows rows = [&] {
-    const TrainingRows all =
-        all_rows(runs, trained.inputs, task, trained.temperature_range,
-                 trained.scale_factor ? &*trained.scale_factor : nullptr);
-    return selected(all,
-                    all.beyond_range == 0.0 ||
-                        all.inputs.col(all.inputs.cols() - 2) >= kWarmUpShare);
-  }();
-  const bool held_out = &runs == &task.held_out_runs;
-  auto [group, by] = held_out
-                         ? independent_groups(rows, runs.set.has_value())
-                         : std::pair{group_rows(rows, Grouping::kLeg).of_row,
-                                     grouping_name(Grouping::kLeg)};
-  const Index width = rows.inputs.cols() - 2;
-  return {rows.temperature,
-          rows.bias - trained.bias.predict(rows.inputs.leftCols(width)),
-          rows.inputs.col(width),
-          rows.inputs.col(width + 1),
-          std::move(group),
-          std::move(by)};
 }
 
 ArrayXd sigma_grid(const TemperatureRange& range) {
@@ -140,11 +90,6 @@ LookupTable residual_curve(const ResidualRows& rows,
                           rows.residual(which).square(), grid)};
 }
 
-// Files are taken for those of one gyro.
-bool has_several_devices(const SigmaTask& task) {
-  return task.runs.set && (task.rows.device != task.rows.device(0)).any();
-}
-
 // What is known before any calibration. Throws UndeterminedFit where nothing
 // is.
 BiasSigma uncalibrated(const FittedCompensator& trained,
@@ -159,7 +104,9 @@ BiasSigma uncalibrated(const FittedCompensator& trained,
         adapted->noise);
   if (!is_one_of<PolynomialSpec, SplineSpec>(task.kind) ||
       has_several_devices(task))
-    throw UndeterminedFit("it takes residuals of held-out runs");
+    throw UndeterminedFit(
+        "it takes residuals of held-out runs, or of groups that "
+        "cross-validation leaves out");
   LeftOutSigma curve =
       left_out_sigma(task.kind, task.inputs, task.rows,
                      sigma_grid(trained.temperature_range), task.seed);
@@ -173,12 +120,10 @@ BiasSigma uncalibrated(const FittedCompensator& trained,
   return sigma;
 }
 
-bool is_calibrated_by_population(const SigmaTask& task,
-                                 const ResidualRows& rows) {
+bool is_calibrated_by_population(const SigmaTask& task, int groups) {
   const auto* adapted = std::get_if<AdaptedSpec>(&task.kind);
   return adapted != nullptr && adapted->population.sigma &&
-         groups_among(rows, RowMask::Constant(rows.size(), true)) <
-             kLeastConformalGroups;
+         groups < kLeastConformalGroups;
 }
 
 constexpr int kLeastLeftOut = 3;
@@ -231,6 +176,75 @@ ArrayXd leverage(const FitSpec& kind, const std::vector<Input>& inputs,
   return sum;
 }
 
+int group_count_of(const ResidualRows& rows) {
+  return groups_among(rows, RowMask::Constant(rows.size(), true));
+}
+
+// Residuals of one run or device do not tell how the next one differs: they can
+// only show that the sigma of a fit is too small.
+void calibrate_on_one(BiasSigma& sigma, const ResidualRows& rows) {
+  if (sigma.source != SigmaSource::kCovariance) return;
+  BiasSigma shown = sigma;
+  calibrate(shown, rows);
+  shown.factor = std::max(shown.factor, 1.0);
+  shown.calibration.method =
+      "one group, which can widen sigma and not narrow it: " +
+      shown.calibration.method;
+  sigma = std::move(shown);
+}
+
+void calibrate_on_held_out(const FittedCompensator& trained,
+                           const SigmaTask& task,
+                           std::optional<BiasSigma>& sigma,
+                           std::string& why_none) {
+  const ResidualRows rows = residuals_of(trained, task.held_out_runs, task);
+  const int groups = group_count_of(rows);
+  if (groups == 0) {
+    why_none += "; held-out runs have no row within the temperatures";
+  } else if (groups == 1 && sigma) {
+    calibrate_on_one(*sigma, rows);
+  } else if (groups == 1) {
+    why_none =
+        "one held-out run does not tell how runs differ: expected two or more, "
+        "or one of several power cycles or legs";
+  } else {
+    if (!sigma) {
+      sigma.emplace();
+      sigma->curve = residual_curve(rows, trained.temperature_range);
+    }
+    if (!is_calibrated_by_population(task, groups)) calibrate(*sigma, rows);
+  }
+}
+
+// Groups of the training rows in place of held-out runs. Fits that are not
+// linear are not repeated unless cross-validation was asked for.
+void calibrate_on_left_out(const FittedCompensator& trained,
+                           const SigmaTask& task,
+                           std::optional<BiasSigma>& sigma,
+                           std::string& why_none) {
+  const bool is_linear = is_one_of<PolynomialSpec, SplineSpec>(task.kind);
+  std::optional<RowGroups> groups;
+  if (is_linear || task.groups) groups = groups_to_leave_out(task);
+  if (groups) try {
+      const ResidualRows rows = left_out_residuals(trained, task, *groups);
+      if (group_count_of(rows) >= 2) {
+        sigma.emplace();
+        sigma->curve = residual_curve(rows, trained.temperature_range);
+        calibrate(*sigma, rows);
+        sigma->calibration.method +=
+            "; each was predicted by a fit to the others";
+        return;
+      }
+      why_none +=
+          "; the groups left out have no row within the temperatures "
+          "of the others";
+    } catch (const UndeterminedFit& error) {
+      why_none += std::string("; ") + error.what();
+    }
+  if (sigma && sigma->source == SigmaSource::kCovariance)
+    calibrate_terms(*sigma, residuals_of(trained, task.runs, task));
+}
+
 template <class Count>
 [[noreturn]] void fail_soaks(Count found, const char* where) {
   throw UndeterminedFit(fmt::format(
@@ -241,38 +255,30 @@ template <class Count>
 
 }  // namespace
 
+bool may_state_sigma(const FitSpec& kind) {
+  return !is_one_of<NoneSpec, ConstantSpec, ThermistorSpec, Px4Spec,
+                    ArduPilotSpec>(kind);
+}
+
 std::optional<BiasSigma> fit_bias_sigma(const FittedCompensator& trained,
                                         const SigmaTask& task,
-                                        std::vector<std::string>& remarks) {
-  if (is_one_of<NoneSpec, ConstantSpec, ThermistorSpec, Px4Spec, ArduPilotSpec>(
-          task.kind))
-    return std::nullopt;
+                                        std::string& why_none) {
+  if (!may_state_sigma(task.kind)) return std::nullopt;
   std::optional<BiasSigma> sigma;
-  std::string why_none;
   try {
     sigma = uncalibrated(trained, task);
   } catch (const UndeterminedFit& error) {
     why_none = error.what();
   }
-  const bool any_held_out = task.held_out_runs.count > 0;
-  if (any_held_out) {
-    const ResidualRows rows = residuals_of(trained, task.held_out_runs, task);
-    if (rows.size() == 0 && sigma) return sigma;
-    if (rows.size() == 0)
-      why_none += "; held-out runs have no row within the temperatures";
-    if (rows.size() > 0 && !sigma) {
-      sigma.emplace();
-      sigma->curve = residual_curve(rows, trained.temperature_range);
-    }
-    if (sigma && !is_calibrated_by_population(task, rows))
-      calibrate(*sigma, rows);
-  } else if (sigma && sigma->source == SigmaSource::kCovariance) {
-    calibrate_terms(*sigma, residuals_of(trained, task.runs, task));
-  }
-  if (sigma)
+  if (task.held_out_runs.count > 0)
+    calibrate_on_held_out(trained, task, sigma, why_none);
+  const bool may_leave_out = task.held_out_runs.count == 0 || !sigma;
+  if (may_leave_out && population_behind(trained, task.kind) == nullptr)
+    calibrate_on_left_out(trained, task, sigma, why_none);
+  if (sigma) {
     sigma->growth = growth_of(trained, task.kind, *sigma);
-  else
-    remarks.push_back("no sigma: " + why_none);
+    why_none.clear();
+  }
   return sigma;
 }
 
@@ -285,9 +291,9 @@ std::optional<AdaptationSigma> fit_adaptation_sigma(
     return std::nullopt;
   return adaptation_sigma(
       population, task.inputs, task.held_out,
-      own_curve_residuals(
-          all_rows(task.held_out_runs, task.inputs, task, {}, scale_factor),
-          spec->grid_K, remarks));
+      own_curve_residuals(rows_with_ramps(task.held_out_runs, task.inputs, task,
+                                          {}, scale_factor),
+                          spec->grid_K, remarks));
 }
 
 ArrayXd local_rms(const Eigen::Ref<const ArrayXd>& T,

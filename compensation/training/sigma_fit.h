@@ -13,45 +13,36 @@
 #include "compensation/methods/population.h"
 #include "compensation/models/lookup_table.h"
 #include "compensation/rows/row_groups.h"
-#include "compensation/rows/run_source.h"
 #include "compensation/rows/training_rows.h"
+#include "compensation/training/sigma_residuals.h"
 
 namespace beamgyro::internal {
 
 /// Kind of group of a sigma that no run calibrated, in SigmaCalibration.
 constexpr const char* kLeftOutGroup = "soak";
 
-/// What the sigma of a trained compensator is fitted to.
-struct SigmaTask {
-  const FitSpec& kind;
-  const std::vector<Input>& inputs;  // that `kind` was fitted to
-  const RowOptions& options;         // of these rows
-  const TrainingRows& rows;          // their columns are `inputs`
-  const TrainingRows& held_out;      // likewise; may be empty
-  const RunSource& runs;
-  const RunSource& held_out_runs;
-  std::uint64_t seed;
-};
+/// Whether the sigma of a method can be told at all: not that of constants, a
+/// thermistor or fits of autopilots.
+bool may_state_sigma(const FitSpec& kind);
 
 /// Returns the sigma of `trained`, or nothing where its method cannot tell one,
-/// nor where the data cannot, with a line in `remarks` that says why. s(T) is
-/// - of a population and of an adapted device the posterior deviation
-///   (population_sigma(), adapted_sigma());
-/// - of a polynomial and a spline of one gyro the root mean square near T of
-///   what groups of rows leave when they are left out in turn, in the shape of
-///   the covariance of the fit. A group is a stretch of rows within
-///   kPointWidth: rows of a soak share slow noise and count as one;
-/// - of others that read a temperature (not of constants, a thermistor or fits
-///   of autopilots) the root mean square near T of the residuals of held-out
-///   runs. Without these there is none.
-/// Held-out runs also calibrate (calibrate()), by device of a set, else by run,
-/// cycle or leg, whichever gives two groups first. An adapted device takes the
-/// calibration of its population until they give kLeastConformalGroups. Without
-/// held-out runs, polynomials and splines take a_on and a_rate from the
-/// training runs by leg. The runs concerned are visited once more.
+/// nor where the data cannot, with the reason in `why_none`.
+/// - Of a population and of an adapted device s(T) is the posterior deviation
+///   (population_sigma(), adapted_sigma()). Held-out devices or runs calibrate
+///   it from two on (calibrate()); an adapted device takes the calibration of
+///   its population until they are kLeastConformalGroups.
+/// - Of others s(T) is the root mean square near T of the residuals of held-out
+///   runs, power cycles or legs, whichever gives two groups first. Without
+///   held-out runs those of groups_to_leave_out() take their place: of a
+///   polynomial or a spline always, of others where cross-validation was asked
+///   for.
+/// - Of a polynomial and a spline of rows without such groups s(T) is that of
+///   left_out_sigma(), with a_on and a_rate of the training rows. It is also
+///   what held-out runs calibrate; one such group can only widen it.
+/// The runs concerned are visited once more.
 std::optional<BiasSigma> fit_bias_sigma(const FittedCompensator& trained,
                                         const SigmaTask& task,
-                                        std::vector<std::string>& remarks);
+                                        std::string& why_none);
 
 /// Returns adaptation_sigma() of a population that was just learned, on the
 /// held-out devices, or nothing without a set of these. Devices that it leaves

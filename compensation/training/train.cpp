@@ -43,21 +43,24 @@ void check_runs(const ModelSpec& spec, const RunSource& runs,
 struct RunFacts {
   std::vector<RunMark> runs;
   double coarsest_resolution = 0.0;  // [K], of the temperature
-  bool is_ageing = false;            // a device, by remembers_or_ages()
+  bool may_remember = false;         // a device
+  std::optional<double> age;         // [h], of the oldest unit, by stated_age()
 };
 
 // Returns the same runs and notes facts about each as it passes.
 RunSource noting(const RunSource& runs, RunFacts& facts) {
-  return {
-      runs.count, [&](const RunSource::Visitor& visit) {
-        runs.for_each([&](const TrainingRun& run) {
-          visit(run);  // whose errors name the run
-          if (!run.sha256.empty()) facts.runs.push_back(mark_of(run));
-          facts.coarsest_resolution = std::max(
-              facts.coarsest_resolution, temperature_resolution(run.recording));
-          facts.is_ageing = facts.is_ageing || remembers_or_ages(run.recording);
-        });
-      }};
+  return {runs.count, [&](const RunSource::Visitor& visit) {
+            runs.for_each([&](const TrainingRun& run) {
+              visit(run);  // whose errors name the run
+              if (!run.sha256.empty()) facts.runs.push_back(mark_of(run));
+              facts.coarsest_resolution =
+                  std::max(facts.coarsest_resolution,
+                           temperature_resolution(run.recording));
+              facts.may_remember =
+                  facts.may_remember || may_remember(run.recording);
+              facts.age = std::max(facts.age, stated_age(run.recording));
+            });
+          }};
 }
 
 // Returns the files as a compensator keeps them.
@@ -83,6 +86,24 @@ std::optional<RowGroups> groups_of(const ModelSpec& spec,
   }
   if (spec.candidates.empty() || held_out.size() > 0) return std::nullopt;
   return folds_of(rows, kLeastGroups);
+}
+
+// What the runs behind a sigma have shown.
+SigmaValidity validity_of(const TrainingRows& rows, const TrainingRows& unseen,
+                          const RunFacts& facts) {
+  SigmaValidity validity{{}, facts.age};
+  bool rises = false, falls = false;
+  for (const TrainingRows* seen : {&rows, &unseen})
+    for (const auto& [begin, end] : stretches_of(seen->leg)) {
+      const double change =
+          seen->temperature(end - 1) - seen->temperature(begin);
+      rises = rises || change >= kLeastWay;
+      falls = falls || change <= -kLeastWay;
+    }
+  if (facts.may_remember && rises != falls)
+    validity.only_way =
+        rises ? TemperatureWay::kRising : TemperatureWay::kFalling;
+  return validity;
 }
 
 double rms_about(double value, const ArrayXd& bias) {
@@ -173,18 +194,28 @@ void fit_sigma(FittedCompensator& c, const SigmaTask& task,
     c.population->sigma = fit_adaptation_sigma(
         *c.population, c.scale_factor ? &*c.scale_factor : nullptr, task,
         remarks);
-  c.sigma = fit_bias_sigma(c, task, remarks);
+  c.sigma = fit_bias_sigma(c, task, c.sigma_not_known);
 }
 
 void add_sigma_caution(const BiasSigma& sigma, const TrainingRows& rows,
                        std::vector<std::string>& warnings) {
-  const bool is_calibrated = sigma.calibration.by != kLeftOutGroup;
-  if (sigma.source != SigmaSource::kCovariance || is_calibrated ||
+  if (sigma.source == SigmaSource::kPosterior ||
       rows.cycle.maxCoeff() > rows.cycle.minCoeff())
     return;
-  warnings.emplace_back(
-      "sigma is too small by what all soaks of this one run share, turn-on "
-      "offset and slow noise: hold out runs to calibrate it");
+  warnings.push_back(fmt::format(
+      "sigma is too small by what all {}s of this one run share, turn-on "
+      "offset and slow noise: hold out runs to calibrate it",
+      sigma.calibration.by));
+}
+
+// Of a gyro that may have hysteresis.
+void add_way_caution(const SigmaValidity& validity,
+                     std::vector<std::string>& warnings) {
+  if (!validity.only_way) return;
+  warnings.push_back(fmt::format(
+      "sigma is of {} temperatures alone: hysteresis does not show in it; "
+      "train or hold out a run that goes the other way, too",
+      way_name(*validity.only_way)));
 }
 
 }  // namespace
@@ -285,19 +316,23 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
     const TrainingRows others = with_columns(unseen, spec.inputs, inputs);
     fit_sigma(c,
               {selected.candidate.kind, inputs, spec.rows, fitted, others, runs,
-               held_out, seed},
+               held_out, seed, groups},
               result.sigma_remarks);
   } else {
-    result.sigma_remarks.emplace_back(
-        "no sigma: the curve is averaged with a constant");
+    c.sigma_not_known = "the curve is averaged with a constant";
   }
+  if (c.sigma) c.sigma->validity = validity_of(rows, unseen, facts);
+  if (!c.sigma_not_known.empty())
+    result.sigma_remarks.push_back("no sigma: " + c.sigma_not_known);
   if (groups) p.cross_validated = summary_of(*groups, selected);
   p.warnings = cautions({c.inputs, c.bias, c.baseline, own, own_unseen,
                          facts.coarsest_resolution, known != TemperatureRange{},
-                         facts.is_ageing});
+                         facts.age.has_value()});
   p.warnings.insert(p.warnings.end(), selected.fit.warnings.begin(),
                     selected.fit.warnings.end());
-  if (c.sigma) add_sigma_caution(*c.sigma, own, p.warnings);
+  if (c.sigma && held_out.count == 0)
+    add_sigma_caution(*c.sigma, own, p.warnings);
+  if (c.sigma) add_way_caution(c.sigma->validity, p.warnings);
   for (const std::string& warning :
        {warning_of_shared_seeds(p.training, p.held_out, groups.has_value()),
         why_no_claim(spec, groups, selected)})

@@ -200,13 +200,16 @@ Json bias_sigma_json(const BiasSigma& sigma) {
       {"groups", sigma.calibration.groups},
       {"level", finite_json(sigma.calibration.level)},
       {"half_width", finite_json(sigma.calibration.half_width)}};
+  if (const Json holds_for = sigma_validity_json(sigma.validity);
+      !holds_for.is_null())
+    json["holds_for"] = holds_for;
   return json;
 }
 
 BiasSigma read_bias_sigma(const JsonNode& node) {
   node.require_only({"temperature_degC", "sigma_deg_per_s",
                      "growth_deg_per_s_per_K", "power_on", "temperature_rate",
-                     "factor", "source", "calibration"});
+                     "factor", "source", "calibration", "holds_for"});
   BiasSigma sigma;
   sigma.curve = read_curve(node);
   const std::vector<JsonNode> growth =
@@ -220,6 +223,8 @@ BiasSigma read_bias_sigma(const JsonNode& node) {
   sigma.factor = read_sized(node.at("factor"));
   sigma.source = read_source(node.at("source"));
   sigma.calibration = read_calibration(node.at("calibration"));
+  if (node.has("holds_for"))
+    sigma.validity = read_sigma_validity(node.at("holds_for"));
   return sigma;
 }
 

@@ -13,6 +13,7 @@
 #include "compensation/inputs/features.h"
 #include "compensation/inputs/input.h"
 #include "compensation/models/lookup_table.h"
+#include "compensation/uncertainty/sigma_validity.h"
 #include "dataset/files/json_node.h"
 #include "dataset/recording/recording.h"
 
@@ -22,7 +23,7 @@ namespace beamgyro::internal {
 enum class SigmaSource {
   kPosterior,   // of a Gaussian process: the spread of a population
   kCovariance,  // of a least-squares fit, and the residuals between its groups
-  kResiduals,   // of runs that were held out
+  kResiduals,   // of runs, or groups of training rows, that were held out
 };
 
 /// A temperature beyond these [degC] is a glitch. Sigma counts it as the nearer
@@ -71,6 +72,7 @@ struct BiasSigma {
   double factor = 1.0;                        // k [-], > 0
   SigmaSource source = SigmaSource::kResiduals;
   SigmaCalibration calibration;
+  SigmaValidity validity = {};
 
   /// Returns s(T) [deg/s] without the factor.
   double curve_at(double temperature) const;

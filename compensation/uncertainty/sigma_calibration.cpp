@@ -52,13 +52,28 @@ double mean_normalised_square(const std::map<int, std::vector<Index>>& by_group,
   return sum / static_cast<double>(by_group.size());
 }
 
+// Independent residuals of the groups [-].
+double degrees_of_freedom(const std::map<int, std::vector<Index>>& by_group,
+                          const ResidualRows& rows) {
+  double sum = 0.0;
+  for (const auto& [group, own] : by_group) {
+    const auto [lowest, highest] = std::ranges::minmax(
+        own, {}, [&](Index k) { return rows.temperature(k); });
+    sum +=
+        std::max(1.0, (rows.temperature(highest) - rows.temperature(lowest)) /
+                          rows.correlation);
+  }
+  return sum;
+}
+
 // What an amplitude from few groups has to be widened by, for intervals that
 // hold kSigmaLevel of normal residuals.
-double widening(std::size_t groups) {
-  if (groups >= std::size_t{kLeastConformalGroups}) return 1.0;
+double widening(const std::map<int, std::vector<Index>>& by_group,
+                const ResidualRows& rows) {
+  if (by_group.size() >= std::size_t{kLeastConformalGroups}) return 1.0;
   constexpr double kBeyondLevel = 0.5 * (1.0 - kSigmaLevel);
   const boost::math::students_t_distribution<double> student(
-      static_cast<double>(groups));
+      degrees_of_freedom(by_group, rows));
   return quantile(complement(student, kBeyondLevel)) /
          quantile(complement(boost::math::normal_distribution<double>(),
                              kBeyondLevel));
@@ -133,7 +148,7 @@ double mean_square_amplitude(const ResidualRows& rows, const RowMask& mask,
   const auto [below, above] = boost::math::tools::toms748_solve(
       excess, least, high, boost::math::tools::eps_tolerance<double>(50),
       steps);
-  return 0.5 * (below + above) * widening(by_group.size());
+  return 0.5 * (below + above) * widening(by_group, rows);
 }
 
 double conformal_half_width(const ResidualRows& rows, const ArrayXd& sigma) {
@@ -180,7 +195,8 @@ void calibrate(BiasSigma& sigma, const ResidualRows& rows) {
   if (!(sigma.factor > 0.0)) sigma.factor = 1.0;
   const int groups = groups_among(rows, mask);
   calibrate_terms(sigma, rows);
-  if (!any_soak) sigma.temperature_rate.reset();
+  if (!any_soak && sigma.temperature_rate)
+    sigma.temperature_rate->amplitude = 0.0;
   const double half_width =
       conformal_half_width(rows, sigma_at_rows(sigma, rows));
   sigma.calibration = {calibration_words(groups), rows.by,

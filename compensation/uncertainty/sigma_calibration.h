@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <string>
 
 #include "compensation/uncertainty/bias_sigma.h"
@@ -29,6 +30,9 @@ struct ResidualRows {
   Eigen::ArrayXd temperature_rate;  // [K/s], smoothed
   Eigen::ArrayXi group;
   std::string by;  // kind of group
+  // [K], over which the residuals of a group forget themselves; infinite where
+  // a group is one draw, as a device of a set is
+  double correlation = std::numeric_limits<double>::infinity();
 
   Eigen::Index size() const { return residual.size(); }
 };
@@ -49,8 +53,9 @@ int groups_among(const ResidualRows& rows, const RowMask& mask);
 /// of the rows of `mask` is 1 on average, over groups of equal weight: sigma is
 /// then a standard deviation, whatever the distribution. It is 0 where the
 /// others are as large already. With fewer than kLeastConformalGroups it is
-/// widened by Student's t over the normal quantile of kSigmaLevel. Throws
-/// std::invalid_argument when no row is in `mask`.
+/// widened by Student's t over the normal quantile of kSigmaLevel, with a
+/// degree of freedom for each rows.correlation that a group spans, and one or
+/// more for each group. Throws std::invalid_argument when no row is in `mask`.
 double mean_square_amplitude(const ResidualRows& rows, const RowMask& mask,
                              const Eigen::ArrayXd& others,
                              const Eigen::ArrayXd& scale);
@@ -65,8 +70,8 @@ double conformal_half_width(const ResidualRows& rows,
 
 /// Calibrates the factor on the rows of soaks, then a_rate on those of ramps,
 /// then a_on on those of warm-ups, and describes it in `calibration`. Without
-/// rows of soaks the factor is calibrated on all, and there is no a_rate. A
-/// term without rows of its own is absent.
+/// rows of soaks the factor is calibrated on all, and a_rate is 0: s(T) is then
+/// that of ramps. A term without rows of its own is absent.
 void calibrate(BiasSigma& sigma, const ResidualRows& rows);
 
 /// Calibrates a_rate and a_on alone.

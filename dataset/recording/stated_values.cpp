@@ -84,6 +84,19 @@ bool has_table(const std::string& text, const std::string& overrides_text,
       .value_or(false);
 }
 
+std::optional<double> number_of(const std::string& text,
+                                const std::string& overrides_text,
+                                std::string_view key) {
+  return with_value(text, overrides_text, key,
+                    [](const ConfigNode& value) -> std::optional<double> {
+                      if (value.kind == ConfigNode::Kind::kInteger)
+                        return static_cast<double>(value.integer);
+                      return value.kind == ConfigNode::Kind::kFloat
+                                 ? std::optional(value.number)
+                                 : std::nullopt;
+                    });
+}
+
 }  // namespace
 
 bool states_device_table(const Recording& recording, std::string_view name) {
@@ -96,14 +109,12 @@ bool states_scenario_table(const Recording& recording, std::string_view name) {
 
 std::optional<double> stated_device_number(const Recording& recording,
                                            std::string_view key) {
-  return with_value(recording.device_text, recording.overrides_text, key,
-                    [](const ConfigNode& value) -> std::optional<double> {
-                      if (value.kind == ConfigNode::Kind::kInteger)
-                        return static_cast<double>(value.integer);
-                      return value.kind == ConfigNode::Kind::kFloat
-                                 ? std::optional(value.number)
-                                 : std::nullopt;
-                    });
+  return number_of(recording.device_text, recording.overrides_text, key);
+}
+
+std::optional<double> stated_scenario_number(const Recording& recording,
+                                             std::string_view key) {
+  return number_of(recording.scenario_text, recording.overrides_text, key);
 }
 
 std::optional<bool> stated_scenario_flag(const Recording& recording,

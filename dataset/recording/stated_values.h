@@ -20,6 +20,11 @@ bool states_device_table(const Recording& recording, std::string_view name);
 /// The same for the scenario of a recording.
 bool states_scenario_table(const Recording& recording, std::string_view name);
 
+/// Returns the number with a dotted key in the scenario and the overrides of a
+/// recording, or nothing where there is none.
+std::optional<double> stated_scenario_number(const Recording& recording,
+                                             std::string_view key);
+
 /// Returns the flag with a dotted key in the scenario and the overrides of a
 /// recording, or nothing where there is none.
 std::optional<bool> stated_scenario_flag(const Recording& recording,

@@ -2,13 +2,15 @@
 """The 1-sigma of the compensated rate: train, compensate, export."""
 
 import json
+import pathlib
 import re
+import types
 
 import h5py
 import numpy as np
 
 from exported import WARNINGS
-from program import ROOT, SCENARIOS, ProgramTest, ended, said, script
+from program import PROGRAM, ROOT, SCENARIOS, ProgramTest, ended, said, script
 from train_set_test import CAMPAIGN, SCENARIO
 
 SPLINE = 'kind = "spline"\n[rows]\nsteady_K_per_min = 0.05\n'
@@ -197,3 +199,108 @@ class OfAPopulation(ProgramTest):
         # Known from two soaks, a device is surer than the population.
         self.assertLess(np.mean(adapted["sigma_deg_per_s"]),
                         np.mean(sigma["sigma_deg_per_s"]))
+
+
+class OfAUnitThatAges(ProgramTest):
+    def test_after_a_year_its_sigma_is_said_not_to_hold(self):
+        lifelike = SOAKS.replace(
+            "device.toml", str(SCENARIOS / "devices/lifelike.toml"))
+        self.write("spline.toml", SPLINE)
+        self.write("lifelike.toml", lifelike)
+        self.ok("run", "lifelike.toml", "-o", "new.h5")
+        for days, is_told in [(6, False), (365, True)]:
+            self.ok("run", "lifelike.toml", "-o", f"{days}.h5", "--seed", 9,
+                    "--set", f"age.hours={24 * days}")
+            self.ok("train", "new.h5", "--model", "spline.toml", "-o",
+                    "c.json")
+            self.assertEqual(self.json("c.json")["sigma"]["holds_for"],
+                             {"temperature_way": "rising", "age_hours": 0})
+            words = f"sigma does not hold: the unit is {24 * days} h old"
+            compensated = self.ended("compensate", "c.json", f"{days}.h5", "-o",
+                                     f"out_{days}.h5").stderr
+            self.assertEqual(words in compensated, is_told)
+            self.beamgyro("validate", "c.json", f"{days}.h5", "--json",
+                          "found.json")
+            self.assertEqual(any(words in warning for warning in
+                                 self.json("found.json")["warnings"]), is_told)
+
+
+class OfLegs(ProgramTest):
+    """Three legs of a log at 3 K/min, two of which train (three_legs.py)."""
+    UNITS = 8
+
+    def setUp(self):
+        super().setUp()
+        self.study = self.study_in_dir()
+
+    def prepare(self):
+        super().prepare()
+        study = self.study_in_dir()
+        study.draw()
+        for unit in range(self.UNITS):
+            study.simulate(unit)
+
+    def study_in_dir(self):
+        return script(ROOT / "bench/three_legs.py").Study(
+            types.SimpleNamespace(
+                program=pathlib.Path(PROGRAM), out=self.dir / "legs",
+                units=self.UNITS, seed=3100, trims=[1 / 300, 0.1], jobs=2,
+                models=[]))
+
+    def scored(self, unit, leg):
+        """Share within the interval of 90 %, and what is said."""
+        legs = [self.study.leg(unit, k) for k in range(3)]
+        scored = legs.pop(leg)
+        warnings = self.ended("train", *legs, "--model",
+                              SCENARIOS / "models/cubic.toml", "-o",
+                              "leg.json").stderr
+        answer = self.ended("compensate", "leg.json", scored, "-o", "leg.h5")
+        lowest, highest = self.json("leg.json")["temperature_range_degC"]
+        with h5py.File(self.dir / "leg.h5") as run:
+            error = run["compensated_rate"][()] - run["true_rate"][()]
+            sigma = run["compensated_rate_sigma"][()]
+            T = run["temperature"][()]
+        own = np.isfinite(error) & (T >= lowest) & (T <= highest)
+        count = own.sum() // 60 * 60
+        means = error[own][:count].reshape(-1, 60).mean(1)
+        sigmas = sigma[own][:count].reshape(-1, 60).mean(1)
+        (self.dir / "leg.h5").unlink()
+        return (np.mean(np.abs(means) <= 1.645 * sigmas), warnings,
+                answer.stderr)
+
+    def test_sigma_holds_or_is_said_not_to(self):
+        shares = []
+        for unit in range(self.UNITS):
+            for leg in (0, 2):  # the others go both ways
+                share, warned, said_of_it = self.scored(unit, leg)
+                shares.append(share)
+                self.assertNotIn("temperatures alone", warned)
+                self.assertNotIn("does not hold", said_of_it)
+            _, warned, said_of_it = self.scored(unit, 1)
+            self.assertRegex(warned,
+                             "sigma is of (rising|falling) temperatures alone")
+            self.assertRegex(said_of_it, "sigma does not hold of "
+                             "(rising|falling) temperatures")
+        # The mean over 16 legs is known to 6 %.
+        self.assertGreater(np.mean(shares), 0.80)
+
+    def test_one_held_out_run_is_no_evidence_of_a_network(self):
+        legs = [self.study.leg(0, k) for k in range(3)]
+        self.write("bp.toml", 'kind = "bp"\ninputs = ["temperature"]\n[bp]\n'
+                   "hidden = [3]\n"
+                   "max_epochs = 20\nrestarts = 1\n")
+        text = self.ok("train", legs[0], legs[1], "--model", "bp.toml",
+                       "--held-out", legs[2], "-o", "bp.json")
+        self.assertIn("\nno sigma: one held-out run does not tell", text)
+        stored = self.json("bp.json")
+        self.assertNotIn("sigma", stored)
+        self.assertIn("one held-out run", stored["sigma_not_known"])
+        self.ok("export", "bp.json", "--format", "c", "-o", "code", "--name",
+                "gyro")
+        self.assertIn("States no sigma", self.text("code/gyro.h"))
+        self.rejected("export", "bp.json", "--format", "ekf", "--rest",
+                      legs[2], "-o", "filters", says="one held-out run")
+        self.ok("train", *legs, "--model", "bp.toml", "--cv", "run", "-o",
+                "bp.json")
+        calibration = self.json("bp.json")["sigma"]["calibration"]
+        self.assertEqual((calibration["by"], calibration["groups"]), ("run", 3))

@@ -74,23 +74,6 @@ TEST(Cautions, TheDriveFrequencyOfADeviceThatAges) {
              "[memory] or [age]");
 }
 
-TEST(Cautions, DevicesThatAgeSayItInTheirFilesOrOverrides) {
-  Recording recording;
-  EXPECT_FALSE(remembers_or_ages(recording));
-  recording.device_text = "[beam]\nlength_m = 0.04\n";
-  recording.scenario_text = "name = \"rest\"\n";
-  EXPECT_FALSE(remembers_or_ages(recording));
-  recording.device_text += "[memory.ageing]\n";
-  EXPECT_TRUE(remembers_or_ages(recording));
-  recording.device_text = "";
-  EXPECT_FALSE(remembers_or_ages(recording));
-  recording.scenario_text += "[age]\nhours = 8766\n";
-  EXPECT_TRUE(remembers_or_ages(recording));
-  recording.scenario_text = "name = \"rest\"\n";
-  recording.overrides_text = "age.hours=8766\n";
-  EXPECT_TRUE(remembers_or_ages(recording));
-}
-
 TEST(Cautions, SpanUnderTenKelvins) {
   EXPECT_EQ(cautions_of(straight(grid(20.0, 30.0, 1.0)), PolynomialSpec{1}),
             Strings{});

@@ -47,6 +47,27 @@ TEST(BiasSigmaJson, AFileWithoutASigmaHasNoMemberOfThatName) {
   EXPECT_FALSE(parse_compensator(text, "mine.json").sigma);
 }
 
+TEST(BiasSigmaJson, WhyThereIsNoneIsReadAndNotBesideOne) {
+  FittedCompensator c = spline_compensator();
+  c.sigma_not_known = "one held-out run";
+  const std::string text = compensator_text(c);
+  EXPECT_EQ(parse_compensator(text, "mine.json").sigma_not_known,
+            "one held-out run");
+  Json json = Json::parse(compensator_text(with_sigma(spline_compensator())));
+  json["sigma_not_known"] = "why";
+  EXPECT_TRUE(
+      holds(rejection([&] { parse_compensator(json.dump(), "mine.json"); }),
+            "sigma_not_known: is there beside a sigma"));
+}
+
+TEST(BiasSigmaJson, WhatItHoldsForIsKept) {
+  FittedCompensator c = with_sigma(spline_compensator());
+  c.sigma->validity = {TemperatureWay::kFalling, 12.5};
+  EXPECT_EQ(parse_compensator(compensator_text(c), "mine.json").sigma->validity,
+            c.sigma->validity);
+  EXPECT_EQ(parsed_with("{}").sigma->validity, SigmaValidity{});
+}
+
 TEST(BiasSigmaJson, TermsMayBeAbsent) {
   EXPECT_NO_THROW(
       parsed_with(R"({"power_on": null, "temperature_rate": null})"));

@@ -86,6 +86,16 @@ TEST(MeanSquareAmplitude, OfFewerGroupsIsWidenedByStudentsT) {
   EXPECT_NEAR(amplitude(soaked({1.0, -7.0})), 5.0 * 2.91999 / 1.64485, 1e-4);
 }
 
+// Two runs of 90 K, over which residuals forget themselves nine times each:
+// t(0.95, 18) = 1.734.
+TEST(MeanSquareAmplitude, CountsWhatARunForgets) {
+  ResidualRows rows = soaked({1.0, 1.0, -7.0, 7.0});
+  rows.group << 0, 0, 1, 1;
+  rows.temperature << -40.0, 50.0, -40.0, 50.0;
+  rows.correlation = 10.0;
+  EXPECT_NEAR(amplitude(rows), 5.0 * 1.73406 / 1.64485, 1e-4);
+}
+
 TEST(MeanSquareAmplitude, IsWhatTheOthersLeave) {
   const ResidualRows rows = soaked(std::vector<double>(20, 1.0));
   const ArrayXd others = ArrayXd::Constant(20, 0.8);
@@ -213,7 +223,8 @@ TEST(Calibrate, RowsOfRampsAloneCalibrateTheFactor) {
   rows.temperature_rate.setConstant(0.02);
   calibrate(sigma, rows);
   EXPECT_NEAR(sigma.factor, 0.4, 1e-12);
-  EXPECT_FALSE(sigma.temperature_rate);
+  ASSERT_TRUE(sigma.temperature_rate);
+  EXPECT_EQ(sigma.temperature_rate->amplitude, 0.0);
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ TEST(TrainedSigma, OfALineIsTheSpreadOfSoaksWhenNothingIsHeldOut) {
   const FittedCompensator c =
       train(line_spec(), soak_runs(3, 10), {}, 1).compensator;
   ASSERT_TRUE(c.sigma);
-  EXPECT_EQ(c.sigma->source, SigmaSource::kCovariance);
+  EXPECT_EQ(c.sigma->source, SigmaSource::kResiduals);
   // 30 soaks of 0.05 deg/s: their deviation is known to 13 %, and a line
   // through them adds 2 / 30 of the variance.
   EXPECT_NEAR(c.sigma->factor * c.sigma->curve_at(0.0), 0.05, 0.02);
@@ -88,6 +88,7 @@ TEST(TrainedSigma, IsWiderWhereTheFitIsLessSure) {
   const FittedCompensator c =
       train(line_spec(), soak_runs(1, 20), {}, 1).compensator;
   ASSERT_TRUE(c.sigma);
+  EXPECT_EQ(c.sigma->source, SigmaSource::kCovariance);
   const ArrayXd& T = c.sigma->curve.temperatures;
   const double lowest = T(0), highest = T(T.size() - 1);
   for (const double d : {1.0, 10.0, 50.0}) {
@@ -123,13 +124,42 @@ TEST(TrainedSigma, ConstantsAndThermistorsHaveNone) {
       train(spec, soak_runs(1, 80), soak_runs(2, 81), 1).compensator.sigma);
 }
 
-TEST(TrainedSigma, ATableHasOneFromHeldOutRunsOnly) {
+// Student's t of one run would be 3.8 times as wide.
+TEST(TrainedSigma, OfATableIsNotKnownFromOneHeldOutRun) {
+  ModelSpec spec = line_spec();
+  spec.kind = TableSpec{};
+  const TrainResult one = train(spec, soak_runs(1, 90), soak_runs(1, 91), 1);
+  EXPECT_FALSE(one.compensator.sigma);
+  EXPECT_EQ(one.compensator.sigma_not_known,
+            "one held-out run does not tell how runs differ: expected two or "
+            "more, or one of several power cycles or legs");
+  EXPECT_EQ(one.sigma_remarks,
+            Names{"no sigma: " + one.compensator.sigma_not_known});
+}
+
+TEST(TrainedSigma, OfALineIsNotNarrowedByOneHeldOutRun) {
+  std::vector<TrainingRun> quiet = soak_runs(1, 21);
+  // 0.5 + 0.02 T without an offset in any soak: nothing is missed.
+  Recording& run = quiet[0].recording;
+  const std::vector<double> T = column_values(run, "temperature");
+  for (Column& column : run.columns)
+    for (std::size_t k = 0; column.name == "rate" && k < T.size(); ++k)
+      column.values[k] = 0.5 + 0.02 * T[k];
+  const FittedCompensator c =
+      train(line_spec(), soak_runs(1, 20), quiet, 1).compensator;
+  ASSERT_TRUE(c.sigma);
+  EXPECT_EQ(c.sigma->factor, 1.0);
+  EXPECT_EQ(c.sigma->calibration.groups, 1U);
+}
+
+TEST(TrainedSigma, ATableHasOneFromRowsItHasNotSeen) {
   ModelSpec spec = line_spec();
   spec.kind = TableSpec{};
   const TrainResult alone = train(spec, soak_runs(1, 90), {}, 1);
   EXPECT_FALSE(alone.compensator.sigma);
-  EXPECT_EQ(alone.sigma_remarks,
-            Names{"no sigma: it takes residuals of held-out runs"});
+  EXPECT_EQ(alone.compensator.sigma_not_known,
+            "it takes residuals of held-out runs, or of groups that "
+            "cross-validation leaves out");
   const FittedCompensator c =
       train(spec, soak_runs(1, 90), soak_runs(2, 91), 1).compensator;
   ASSERT_TRUE(c.sigma);
