@@ -97,7 +97,7 @@ def warm_up(folder):
     top.plot([], [], ".", color=PALE, label="10 Hz samples")
     top.plot(mean_time / 60, mean_rate, ".", color=BLUE, label="60 s means")
     top.plot(minutes, bias + offset, color=ORANGE, lw=2,
-             label="true drift, plus the mean distance of the last 10 min")
+             label="true drift, shifted to the mean of the last 10 min")
     low, high = np.percentile(rate, [0.02, 99.98])
     titled(top, "Virtual gyro after power-on, still air at 25 °C",
            "run with noise; the true drift is what the same gyro shows "

@@ -270,7 +270,8 @@ std::string objection_to_claim(const std::optional<GroupErrors>& model,
                                const std::optional<GroupErrors>& constant,
                                double weight) {
   if (!model || !constant)
-    return "no held-out data: every score here is in-sample and claims nothing";
+    return "these scores are on the data that were fitted; they say nothing "
+           "about new data (--held-out, --cv)";
   const GroupErrors gain = *constant - *model;
   const double rms = rms_of(*model), plain = rms_of(*constant);
   const std::string figures = fmt::format(

@@ -283,8 +283,9 @@ class Selector {
             "{}: {:.6f} deg/s rms over {} unseen {}s{}", candidate.name,
             found.rms(), groups_.count, grouping_name(groups_.by),
             found.weight < 1.0
-                ? fmt::format(", averaged with a constant, weight {:.2f}",
-                              found.weight)
+                ? fmt::format("; the groups disagree, so {:.2f} of it and "
+                              "{:.2f} of a constant are used",
+                              found.weight, 1.0 - found.weight)
                 : ""));
       } catch (const std::invalid_argument& error) {
         remarks.push_back(

@@ -235,8 +235,8 @@ SetContents set_contents(const fs::path& directory) {
   std::optional<SetContents> contents = find_set(directory);
   if (!contents)
     throw std::invalid_argument(fmt::format(
-        "{}: holds no set, or its manifests have lost their first lines; "
-        "expected a directory that generate made",
+        "{}: holds no set that can be read; expected a directory that generate "
+        "made",
         directory.string()));
   return *std::move(contents);
 }

@@ -328,7 +328,7 @@ CheckResult check_rate_correlation(const CheckContext& context) {
     return not_tested("No run varies its true rate over 640 samples or more.");
   worst->words =
       worst->passed()
-          ? "The correction has nothing to do with the true rate, or makes the "
+          ? "The correction does not depend on the true rate, or makes the "
             "answers follow it."
           : fmt::format(
                 "The correction follows the true rate: {:.3g} of it is "

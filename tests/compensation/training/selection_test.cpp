@@ -164,7 +164,7 @@ TEST(Selection, AveragesWithAConstantByWhatLegsAgreeOn) {
   EXPECT_NEAR(ends(1) - ends(0), 2.0 * 0.65 * selected.weight, 1e-9);
   EXPECT_NEAR(ends.mean(), 0.0, 1e-9);
   EXPECT_TRUE(holds(explanation(selected, "linear"),
-                    "averaged with a constant, weight 0.44"));
+                    "so 0.44 of it and 0.56 of a constant are used"));
   EXPECT_FALSE(
       objection_to_claim(selected.errors, selected.constant_errors).empty());
 }
