@@ -156,9 +156,9 @@ std::vector<Index> rows_of_way(const TrainingRows& rows,
 }
 
 // The bias of a device on the grid by rows that reach over it but for a step.
-std::optional<ArrayXd> bias_of(const TrainingRows& rows,
-                               const std::vector<Index>& own,
-                               const ArrayXd& grid, double grid_K) {
+std::optional<ArrayXd> swept_bias(const TrainingRows& rows,
+                                  const std::vector<Index>& own,
+                                  const ArrayXd& grid, double grid_K) {
   if (own.empty()) return {};
   const ArrayXd T = rows.temperature(own);
   if (T.minCoeff() > grid(0) + grid_K ||
@@ -178,9 +178,9 @@ void set_hysteresis(Population& p, const TrainingRows& rows,
     const std::vector<Index>& own = devices[static_cast<std::size_t>(
         k * static_cast<Index>(devices.size()) / kept)];
     const auto falling =
-        bias_of(rows, rows_of_way(rows, own, -1.0), p.temperatures, grid_K);
+        swept_bias(rows, rows_of_way(rows, own, -1.0), p.temperatures, grid_K);
     const auto rising =
-        bias_of(rows, rows_of_way(rows, own, 1.0), p.temperatures, grid_K);
+        swept_bias(rows, rows_of_way(rows, own, 1.0), p.temperatures, grid_K);
     if (!falling || !rising) return;
     half.row(k) = 0.5 * (*falling - *rising).matrix().transpose();
   }
