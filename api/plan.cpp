@@ -258,6 +258,13 @@ SoakPlanResult planned(const Compensator& population, const Device& device,
         "residuals are forecast for normally distributed devices, which real "
         "ones are not; train it again",
         population.content().path()));
+  if (s.model.hysteresis_square().size() > 0)
+    found.hysteresis = std::sqrt(s.model.hysteresis_square().mean());
+  else if (device.content().device.memory.hysteresis)
+    found.warnings.push_back(fmt::format(
+        "{}: has a hysteresis, and the population was not swept both ways: "
+        "what rising and falling temperatures differ by is in no forecast",
+        device.name()));
   SoakPlanResult result{.chosen = schedule_of(found.chosen),
                         .even = schedule_of(found.even),
                         .gain = gain_of(found.gain),

@@ -4,6 +4,7 @@
 
 plan_intervals.py SET CAMPAIGN.toml [--program FILE] [--out DIR] [--draws N]
                   [--size N] [--soaks N]... [--first-seed N] [--keep DIR]
+                  [--device DEVICE.toml]
 
 SET is as planning.py wants it. Populations of --size devices of CAMPAIGN, each
 of another seed, are learned from the sweeps of
@@ -14,6 +15,10 @@ median and in 95 %, and the quotient of the medians, is what the printed
 intervals should hold. Soaks have the bias and quadrature of the check, with the
 slow noise of nominal.toml as `plan` takes it; planning.py simulates them whole,
 with the lag of the beam, and agrees. Ends with DIR/intervals.json.
+
+Of units that remember SET has a run "checkdown" as well, the same soaks from 50
+down to -40 degC: soaks that are reached from above show that one, and what is
+left is scored over both.
 """
 
 import argparse
@@ -60,17 +65,26 @@ variables = ["rate", "temperature", "quadrature", "true_rate"]
     return file
 
 
-def planned(program, file, soaks, out):
+def planned(program, file, soaks, device, out):
     subprocess.run([program, "plan", file, "--soaks", str(soaks), "--range",
-                    RANGE, "--json", out / "plan.json"], check=True,
-                   stdout=subprocess.DEVNULL)
+                    RANGE, "--device", device, "--json", out / "plan.json"],
+                   check=True, stdout=subprocess.DEVNULL,
+                   stderr=subprocess.DEVNULL)
     return json.loads((out / "plan.json").read_text())
 
 
-def check_of(folder):
+def checks_of(folder):
+    """Of the way up and, if there is one, of the way down."""
+    up = check_of(folder, "check")
+    down = [] if not any(folder.glob("checkdown_*.h5")) else [
+        [of[..., ::-1] for of in check_of(folder, "checkdown")]]
+    return [up, *down]
+
+
+def check_of(folder, run):
     """Sensor, bias and quadrature at the end of each soak of the check."""
     found = []
-    for path in sorted(folder.glob("check_*.h5")):
+    for path in sorted(folder.glob(f"{run}_*.h5")):
         time, columns = signals(path)
         ends = HOLD + np.arange(len(CHAMBER)) * (HOLD + 60 / RAMP)
         found.append([np.stack([of[:, (time > end - LAST) & (time <= end)]
@@ -101,9 +115,27 @@ def noise_of(soaks, hold, ramp, devices, random):
             + own * random.standard_normal((devices, len(soaks))))
 
 
-def realised(file, plan, check, random):
+def shown_by(soaks, checks):
+    """Bias and quadrature of soaks, of the way on which each is reached."""
+    order = sorted(soaks, reverse=abs(max(soaks) - START) <
+                   abs(min(soaks) - START))
+    before = dict(zip(order, [START, *order]))
+    of = {soak: checks[-1] if before[soak] > soak else checks[0]
+          for soak in soaks}
+    return [np.stack([[np.interp(soak, CHAMBER, one)
+                       for one in of[soak][curve]] for soak in soaks], 1)
+            for curve in (1, 2)]
+
+
+def realised(file, plan, checks, random):
     """What plan, even soaks and straight lines leave of each device."""
-    sensor, bias, quadrature = check
+    sensor = checks[0][0]
+    size = len(checks[0][1])
+
+    def left_of(curves):
+        return np.sqrt(np.mean([((bias - curves) ** 2).mean(1)
+                                for _, bias, _ in checks], 0))
+
     population = Population(file)
     found = {}
     ramp = plan["schedule"]["ramp_K_per_min"]
@@ -112,13 +144,11 @@ def realised(file, plan, check, random):
         T = np.interp(soaks, CHAMBER, sensor)
         left, lines = [], []
         for _ in range(ROUNDS):
-            shown = [np.stack([np.interp(soaks, CHAMBER, one) for one in curve])
-                     for curve in (bias, quadrature)]
-            shown[0] += noise_of(soaks, of["hold_s"], ramp, len(bias), random)
-            error = bias - population.adapted(T, shown, sensor)
-            left.append(np.sqrt((error ** 2).mean(1)))
-            line = np.stack([np.interp(sensor, T, one) for one in shown[0]])
-            lines.append(np.sqrt(((bias - line) ** 2).mean(1)))
+            shown = shown_by(soaks, checks)
+            shown[0] += noise_of(soaks, of["hold_s"], ramp, size, random)
+            left.append(left_of(population.adapted(T, shown, sensor)))
+            lines.append(left_of(np.stack([np.interp(sensor, T, one)
+                                           for one in shown[0]])))
         found[name] = np.concatenate(left)
         if name == "even":
             found["lines"] = np.concatenate(lines)
@@ -133,7 +163,7 @@ def draw(arguments, seed, soaks, out, check):
     kept = arguments.keep and arguments.keep / f"{seed}.json"
     file = kept if kept and kept.exists() else learned(
         arguments.program, arguments.campaign, seed, arguments.size, out)
-    plan = planned(arguments.program, file, soaks, out)
+    plan = planned(arguments.program, file, soaks, arguments.device, out)
     random = np.random.Generator(np.random.Philox(seed))
     left = realised(file, plan, check, random)
     gain = plan["gain_over_straight_lines"]
@@ -182,10 +212,11 @@ def main():
     parser.add_argument("--soaks", type=int, action="append", default=[])
     parser.add_argument("--first-seed", type=int, default=1001)
     parser.add_argument("--keep", type=pathlib.Path)
+    parser.add_argument("--device", type=pathlib.Path, default=NOMINAL)
     arguments = parser.parse_args()
     arguments.out = out = arguments.out.resolve()
     (out / "sweeps").mkdir(parents=True, exist_ok=True)
-    check = check_of(arguments.set)
+    check = checks_of(arguments.set)
     rows = [draw(arguments, seed, soaks, out, check)
             for soaks in arguments.soaks or [3]
             for seed in range(arguments.first_seed,

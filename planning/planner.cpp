@@ -99,11 +99,26 @@ std::vector<double> Planner::lags(const std::vector<double>& soaks,
   return found;
 }
 
+// Whether each soak is reached from above (1) or from below (-1).
+std::vector<double> Planner::ways(const std::vector<double>& soaks) const {
+  std::vector<double> found;
+  const std::vector<double> order = in_visiting_order(soaks, time_.start);
+  for (const double soak : soaks) {
+    const auto place = std::ranges::find(order, soak);
+    const double before = place == order.begin() ? time_.start : *(place - 1);
+    found.push_back(before > soak ? 1.0 : -1.0);
+  }
+  return found;
+}
+
 Planner::Shown Planner::shown(const std::vector<double>& soaks,
                               std::size_t minutes,
                               const std::optional<StartRow>& row) const {
-  SoakErrors errors = {lags(soaks, minutes), {}};
-  if (row) errors.lag.push_back(row->lag);
+  SoakErrors errors = {lags(soaks, minutes), {}, ways(soaks)};
+  if (row) {
+    errors.lag.push_back(row->lag);
+    errors.way.push_back(1.0);
+  }
   if (behaviour_.noise)
     errors.noise = slow_noise_root(
         *behaviour_.noise, soaks,

@@ -111,6 +111,7 @@ class Planner {
   double longest_way(std::size_t count, double hours, double hold) const;
   std::vector<double> lags(const std::vector<double>& soaks,
                            std::size_t minutes) const;
+  std::vector<double> ways(const std::vector<double>& soaks) const;
   struct Shown {  // by the soaks, with a row of the start if there is one
     std::vector<double> soaks;
     SoakErrors errors;

@@ -50,11 +50,23 @@ struct Observation {
   MatrixXd H;
   SoakModel::Lagging shown;
   MatrixXd noise;  // root of its covariance
+  // What hysteresis adds to each row of H, of each device; or nothing.
+  MatrixXd hysteresis = {};
 };
+// What hysteresis adds to the bias of soaks [deg/s], a row for each device.
+MatrixXd hysteresis_of(const SoakModel& model, const std::vector<double>& soaks,
+                       const std::vector<double>& way) {
+  if (way.empty()) return {};
+  const MatrixXd half = model.hysteresis(soaks);
+  return half.cols() > 0
+             ? MatrixXd(half * array_view(way).matrix().asDiagonal())
+             : half;
+}
+
 Observation observation(const SoakModel& model,
                         const std::vector<double>& soaks,
                         const SoakErrors& errors) {
-  const auto& [lag, noise] = errors;
+  const auto& [lag, noise, way] = errors;
   Observation found = {
       model.equations(soaks),
       model.lagging(soaks, lag.empty() ? std::vector(soaks.size(), 0.0) : lag),
@@ -68,13 +80,22 @@ Observation observation(const SoakModel& model,
       found.noise.row(k * model.rows_per_soak()) =
           noise.row(k) / model.noise().bias;
   }
+  const MatrixXd shown = hysteresis_of(model, soaks, way);
+  if (shown.cols() > 0) {
+    found.hysteresis.setZero(shown.rows(), rows);
+    for (Index k = 0; k < shown.cols(); ++k)
+      found.hysteresis.col(k * model.rows_per_soak()) =
+          shown.col(k) / model.noise().bias;
+  }
   return found;
 }
 
-// Appends the root of e^T W e of each row.
+// Appends the root of e^T W e of each row, with the squares of what else is
+// left.
 void append_rms(const SoakModel& model, const MatrixXd& e,
-                std::vector<double>& rms) {
-  const VectorXd square = (e * model.weight()).cwiseProduct(e).rowwise().sum();
+                const VectorXd& further, std::vector<double>& rms) {
+  VectorXd square = (e * model.weight()).cwiseProduct(e).rowwise().sum();
+  if (further.size() > 0) square += further;
   for (const double value : square)
     rms.push_back(std::sqrt(std::max(value, 0.0)));
 }
@@ -89,7 +110,9 @@ void append_residuals(const SoakModel& model, const Observation& soaks,
   const MatrixXd g = c * H.transpose();  // H c, a row per device
   const MatrixXd Bg = g * B;
   MatrixXd e = gamma * c * model.truth();
-  const MatrixXd shown = e * soaks.shown.H.transpose() + noise;
+  MatrixXd shown = e * soaks.shown.H.transpose() + noise;
+  const bool remembers = soaks.hysteresis.size() > 0;
+  if (remembers) shown += soaks.hysteresis;
   MatrixXd w = (shown.rowwise() + soaks.shown.shift.transpose()) * B;
   for (Index d = 0; d < c.rows(); ++d) {
     // S^-1 = (B^-1 - beta g g^T)^-1 by Sherman and Morrison.
@@ -98,7 +121,7 @@ void append_residuals(const SoakModel& model, const Observation& soaks,
     e.row(d) += beta * g.row(d).dot(w.row(d)) * c.row(d);
   }
   e -= alpha * w * H;
-  append_rms(model, e, rms);
+  append_rms(model, e, remembers ? model.hysteresis_square() : VectorXd(), rms);
 }
 
 // Calls append(noise, rms) in every round, where `noise` has a row a device and
@@ -143,7 +166,7 @@ ResidualForecast forecast_of_process(const SoakModel& model,
   std::vector<double> rms;
   append_rms(
       model,
-      x - (shown.rowwise() + soaks.shown.shift.transpose()) * K.transpose(),
+      x - (shown.rowwise() + soaks.shown.shift.transpose()) * K.transpose(), {},
       rms);
   return quantiles_of(std::move(rms));
 }
@@ -212,13 +235,17 @@ ResidualDraws straight_line_draws(const SoakModel& model,
   // Of the devices without the noise of their training, a row each.
   const MatrixXd curves = model.population().coefficients * model.truth() *
                           (all.modes - lines * shown.modes).transpose();
+  const MatrixXd hysteresis = hysteresis_of(model, soaks, errors.way);
+  const bool remembers = hysteresis.size() > 0;
   return draws_of_devices(
       model, root, [&](const MatrixXd& noise, std::vector<double>& rms) {
         MatrixXd left = curves - noise * lines.transpose();
         left.rowwise() += mean.transpose();
-        for (const auto& one : left.rowwise())
-          rms.push_back(one.norm() /
-                        std::sqrt(static_cast<double>(one.size())));
+        if (remembers) left -= hysteresis * lines.transpose();
+        VectorXd square =
+            left.rowwise().squaredNorm() / static_cast<double>(left.cols());
+        if (remembers) square += model.hysteresis_square();
+        for (const double one : square) rms.push_back(std::sqrt(one));
       });
 }
 

@@ -58,6 +58,9 @@ struct SoakErrors {
   // are exact. Empty: all rows have the independent noise of
   // SoakModel::noise().
   Eigen::MatrixXd noise;
+  // Of each soak: 1 where the chamber was warmer before, -1 where it was
+  // colder. Empty: hysteresis is left out.
+  std::vector<double> way = {};
 };
 
 /// The basis that a population allows: its devices if it stores the
@@ -77,6 +80,10 @@ ForecastBasis forecast_basis(const Population& population);
 /// (SoakModel::truth()), the soaks show G x + shift + noise
 /// (SoakModel::lagging()), and the residual is that of
 /// e = x - P_d H^T (H P_d H^T + I)^-1 (G x + shift + noise).
+///
+/// With the hysteresis h of the devices, soaks show h more on a way down and
+/// less on a way up, and the mean square of the residual is that over both ways
+/// of the run that is compensated: h^2 is added to that of e.
 ///
 /// Of the Gaussian process: x is drawn from N(0, R^2), and mean and covariance
 /// are known.

@@ -72,6 +72,23 @@ SoakModel::SoakModel(Population population, SensorOfChamber sensor,
 void SoakModel::weigh_range() {
   const MatrixXd bias = values(0, known_sensor(range_grid()));
   weight_ = bias.transpose() * bias / static_cast<double>(bias.rows());
+  const ArrayXd grid = range_grid();
+  const MatrixXd half = hysteresis({grid.begin(), grid.end()});
+  if (half.cols() > 0)
+    hysteresis_square_ =
+        half.rowwise().squaredNorm() / static_cast<double>(half.cols());
+}
+
+MatrixXd SoakModel::hysteresis(const std::vector<double>& chamber) const {
+  const MatrixXd& half = population_.hysteresis;
+  if (half.size() == 0) return {};
+  const ArrayXd sensor = known_sensor(array_view(chamber));
+  MatrixXd weights(sensor.size(), half.cols());
+  for (Index g = 0; g < half.cols(); ++g)
+    weights.col(g) =
+        bias_curve(population_, Eigen::VectorXd::Unit(half.cols(), g).array())
+            .predict(sensor);
+  return half * weights.transpose();
 }
 
 SoakModel SoakModel::over(const TemperatureRange& range) const {

@@ -85,6 +85,17 @@ class SoakModel {
   Bias bias(const std::vector<double>& chamber,
             const std::vector<double>& lag) const;
 
+  /// Returns half of what the bias of each device of the population is more
+  /// while the temperature falls [deg/s]: a row for each device, a column for
+  /// each temperature of the chamber. No columns where it is not known.
+  Eigen::MatrixXd hysteresis(const std::vector<double>& chamber) const;
+
+  /// Returns the mean square of the same over the range, of each device
+  /// [(deg/s)^2]. Empty where it is not known.
+  const Eigen::VectorXd& hysteresis_square() const {
+    return hysteresis_square_;
+  }
+
   /// Returns the temperatures of the chamber [degC] over which the residual is
   /// averaged.
   Eigen::ArrayXd range_grid() const;
@@ -117,6 +128,7 @@ class SoakModel {
       modes_;  // of each curve, of the sensor's temperature
   std::vector<CubicSpline> means_;  // likewise
   Eigen::MatrixXd weight_, truth_;
+  Eigen::VectorXd hysteresis_square_;
 };
 
 }  // namespace beamgyro::internal

@@ -114,6 +114,15 @@ std::string extrapolated_lines(const PlanResult& result) {
   return text;
 }
 
+std::string hysteresis_line(const PlanResult& result) {
+  if (!result.hysteresis) return "";
+  return fmt::format(
+      "for a gyro that is warmed and cooled: hysteresis of +-{:.3f} deg/s rms "
+      "is "
+      "counted\n",
+      *result.hysteresis);
+}
+
 std::string trade_off_table(const std::vector<TradeOff>& table) {
   std::string text = fmt::format(
       "\n{:<6}{:>10}{:>9}{:>9}{:>9}{:>8}{:>9}{:>9}{:>9}{:>14}{:>8}\n", "soaks",
@@ -184,7 +193,8 @@ Json schedule_json(const PlanResult& result) {
 
 std::string plan_text(const PlanResult& result) {
   return gain_lines(result) + schedule_lines(result) + comparison(result) +
-         extrapolated_lines(result) + trade_off_table(result.trade_offs);
+         extrapolated_lines(result) + hysteresis_line(result) +
+         trade_off_table(result.trade_offs);
 }
 
 Json plan_json(const PlanResult& result) {
@@ -212,6 +222,8 @@ Json plan_json(const PlanResult& result) {
           {"range_degC", {result.range.lowest, result.range.highest}},
           {"observed", result.observed},
           {"devices", result.devices},
+          {"hysteresis_rms_deg_per_s",
+           result.hysteresis ? Json(*result.hysteresis) : Json()},
           {"forecast",
            result.basis == ForecastBasis::kDevices ? "devices" : "gaussian"},
           {"warnings", result.warnings}};

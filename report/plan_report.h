@@ -37,6 +37,9 @@ struct PlanResult {
   int devices = 0;                         // of the population
   int devices_tried = 0;                   // of those, with coefficients
   ForecastBasis basis = ForecastBasis::kGaussian;
+  // [deg/s], rms over devices and range of half of what falling and rising
+  // temperatures differ by, which is in the forecasts; none: it is not known.
+  std::optional<double> hysteresis = {};
   std::vector<std::string> warnings;
 };
 

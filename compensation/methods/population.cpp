@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <optional>
 #include <stdexcept>
 
 #include "compensation/methods/population_equations.h"
@@ -132,6 +134,59 @@ void set_modes(Population& p, const MatrixXd& X) {
   p.coefficients = coefficients_of(scaled, vectors, variance.tail(kept));
 }
 
+constexpr double kLeastWay = 5.0;  // [K], of a leg that rises or falls
+
+// The rows of a device on legs that fall (`sign` -1) or rise (1).
+std::vector<Index> rows_of_way(const TrainingRows& rows,
+                               const std::vector<Index>& own, double sign) {
+  std::vector<Index> found;
+  for (std::size_t first = 0; first < own.size();) {
+    std::size_t last = first;
+    while (last + 1 < own.size() &&
+           rows.leg(own[last + 1]) == rows.leg(own[first]))
+      ++last;
+    if (sign * (rows.temperature(own[last]) - rows.temperature(own[first])) >=
+        kLeastWay)
+      found.insert(found.end(),
+                   own.begin() + static_cast<std::ptrdiff_t>(first),
+                   own.begin() + static_cast<std::ptrdiff_t>(last + 1));
+    first = last + 1;
+  }
+  return found;
+}
+
+// The bias of a device on the grid by rows that reach over it but for a step.
+std::optional<ArrayXd> swept_bias(const TrainingRows& rows,
+                                  const std::vector<Index>& own,
+                                  const ArrayXd& grid, double grid_K) {
+  if (own.empty()) return {};
+  const ArrayXd T = rows.temperature(own);
+  if (T.minCoeff() > grid(0) + grid_K ||
+      T.maxCoeff() < grid(grid.size() - 1) - grid_K)
+    return {};
+  return fit_cubic_spline(T, rows.bias(own), spline_knots(T, grid_K),
+                          SplineEnd::kNotAKnot)
+      .predict(grid.max(T.minCoeff()).min(T.maxCoeff()));
+}
+
+void set_hysteresis(Population& p, const TrainingRows& rows,
+                    const RowsOfDevices& devices, double grid_K) {
+  const Index kept = p.coefficients.rows();
+  if (rows.leg.size() < rows.size()) return;  // not of recordings
+  MatrixXd half(kept, p.grid());
+  for (Index k = 0; k < kept; ++k) {
+    const std::vector<Index>& own = devices[static_cast<std::size_t>(
+        k * static_cast<Index>(devices.size()) / kept)];
+    const auto falling =
+        swept_bias(rows, rows_of_way(rows, own, -1.0), p.temperatures, grid_K);
+    const auto rising =
+        swept_bias(rows, rows_of_way(rows, own, 1.0), p.temperatures, grid_K);
+    if (!falling || !rising) return;
+    half.row(k) = 0.5 * (*falling - *rising).matrix().transpose();
+  }
+  p.hysteresis = (half.array() * kCoefficientSteps).round() / kCoefficientSteps;
+}
+
 // The prior c ~ N(0, I) above what the points show.
 PointEquations with_prior(const PointEquations& points) {
   const Index modes = points.H.cols();
@@ -166,6 +221,7 @@ Population fit_population(const std::vector<Input>& inputs,
   const MatrixXd deviations = (curves.colwise() - population.mean) /
                               std::sqrt(static_cast<double>(count - 1));
   set_modes(population, deviations);
+  set_hysteresis(population, rows, devices, grid_K);
   return population;
 }
 

@@ -70,6 +70,10 @@ struct Population {
   // older programs have none. The Gaussian process takes no notice of them:
   // they say how far real devices are from it.
   Eigen::MatrixXd coefficients = {};
+  // Of the same devices, one per row, on the grid: half of what the bias is
+  // more while the temperature falls than while it rises [deg/s]. None unless
+  // all devices were swept both ways; the curves are the means of both then.
+  Eigen::MatrixXd hysteresis = {};
 
   Eigen::Index grid() const { return temperatures.size(); }
   TemperatureRange range() const;

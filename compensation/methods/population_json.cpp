@@ -92,6 +92,17 @@ Eigen::MatrixXd read_coefficients(const JsonNode& node, Index modes,
   return coefficients;
 }
 
+Eigen::MatrixXd read_hysteresis(const JsonNode& node, Index devices,
+                                Index grid) {
+  Eigen::MatrixXd half = read_matrix(node, grid, ", one for each temperature");
+  if (half.rows() != devices)
+    node.fail(
+        fmt::format("of {} devices, must be of the {} that have "
+                    "coefficients",
+                    half.rows(), devices));
+  return half;
+}
+
 }  // namespace
 
 Json population_json(const Population& population) {
@@ -103,6 +114,8 @@ Json population_json(const Population& population) {
                {"own", own_json(population.own)},
                {"point_noise_deg_per_s", finite_json(population.point_noise)},
                {"coefficients", rows_json(population.coefficients)}};
+  if (population.hysteresis.size() > 0)
+    json["hysteresis"] = rows_json(population.hysteresis);
   if (population.sigma) json["sigma"] = adaptation_json(*population.sigma);
   return json;
 }
@@ -125,6 +138,9 @@ Population read_population(const JsonNode& node) {
   population.modes = read_matrix(node.at("modes"), size, kEach).transpose();
   population.coefficients =
       read_coefficients(node, population.modes.cols(), population.devices);
+  if (node.has("hysteresis"))
+    population.hysteresis = read_hysteresis(
+        node.at("hysteresis"), population.coefficients.rows(), grid);
   if (node.has("own"))
     population.own = read_own(node.at("own"), 1 + population.channels.size());
   if (node.has("point_noise_deg_per_s"))

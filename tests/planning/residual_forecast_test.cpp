@@ -98,6 +98,36 @@ TEST(ResidualForecast, GrowsWithALagOfTheBeam) {
             1.01 * settled);
 }
 
+TEST(ResidualForecast, HysteresisIsCountedBothWays) {
+  Population few = small_population(3);
+  // The soak tells nothing, so that the residual is the distance from the
+  // others' mean and, on either way, half of what the ways differ by.
+  const SoakModelOptions deaf = {
+      .range = few.range(),
+      .noise = PointNoise{.bias = 1e3, .channel_share = 1e3}};
+  const auto median = [&] {
+    return forecast_residual(SoakModel(few, same_temperature, deaf), {20.0},
+                             {{}, {}, {1.0}})
+        .median;
+  };
+  const double without = median();
+  few.hysteresis = Eigen::MatrixXd::Constant(3, few.grid(), 0.5);
+  EXPECT_NEAR(median(), std::hypot(without, 0.5), 1e-3);
+  // A constant through one soak is moved by it: up after a way down. Over both
+  // directions of the check the squares of the two differ by the cross term
+  // only, which changes its sign with the way.
+  const auto square = [&](double way) {
+    const double rms =
+        straight_line_draws(model_of(few), {20.0},
+                            {{}, Eigen::MatrixXd::Zero(1, 1), {way}})
+            .rms[0];
+    return rms * rms;
+  };
+  const double down = square(1.0), up = square(-1.0);
+  few.hysteresis.setZero();
+  EXPECT_NEAR(0.5 * (down + up), square(1.0) + 2 * 0.25, 1e-9);
+}
+
 TEST(ResidualForecast, TurnOnStaysWhereIndependentNoiseAveragesOut) {
   const SoakModel model = model_of(small_population(200), true);
   const std::vector<double> soaks = {0.0,  5.0,  10.0, 15.0, 20.0,

@@ -3,6 +3,7 @@
 
 import json
 import pathlib
+import re
 import shutil
 import tempfile
 import tomllib
@@ -354,3 +355,65 @@ class Plan(ProgramTest):
                            ("none.json", "none.json"),
                            ("ramp.h5", "recording")]:
             self.rejected("plan", name, *two, says=says)
+
+
+class Remembering(ProgramTest):
+    """A population of units with hysteresis, swept up and down."""
+
+    def prepare(self):
+        super().prepare()
+        shutil.copy(SCENARIOS / "devices/lifelike.toml", self.dir)
+        up = (SCENARIOS / "soak_sweep_sparse.toml").read_text()
+        listed = re.search(r"temperatures_degC = \[([^]]*)\]", up)
+        down = ", ".join(reversed(listed[1].split(","))).strip(" ,\n")
+        self.write("down.toml", up.replace(listed[1], down).replace(
+            "devices/nominal.toml", "lifelike.toml"))
+        head = (SCENARIOS / "campaigns/lifelike_population.toml").read_text()
+        head = head.split("[[run]]")[0].replace("../devices/", "")
+        self.write("c.toml", head + f"""
+[[run]]
+name = "up"
+scenario = "{SCENARIOS}/soak_sweep_sparse.toml"
+[[run]]
+name = "down"
+scenario = "down.toml"
+[output]
+variables = ["rate", "temperature", "quadrature", "true_rate"]
+""")
+        self.ok("generate", "c.toml", "-o", "set", "--devices", "40")
+        for name, runs in [("both", ["up", "down"]), ("one", ["up"])]:
+            self.ok("train", "set", *(word for run in runs
+                                      for word in ["--run", run]), "--model",
+                    SCENARIOS / "population/population.toml", "-o",
+                    f"{name}.json")
+
+    def plan(self, population, *words):
+        answer = self.ended("plan", population, "--soaks", "5", "--device",
+                            "lifelike.toml", "--json", "plan.json", *words)
+        return answer, self.json("plan.json")
+
+    def test_a_population_that_was_swept_both_ways_counts_hysteresis(self):
+        half = np.array(self.json("both.json")["population"]["hysteresis"])
+        self.assertEqual(len(half), self.json("both.json")["population"]
+                         ["devices"])
+        self.assertNotIn("hysteresis", self.json("one.json")["population"])
+        answer, both = self.plan("both.json")
+        self.assertIn("for a gyro that is warmed and cooled: hysteresis of +-",
+                      answer.stdout)
+        rms = both["hysteresis_rms_deg_per_s"]
+        # The range of the plan is that of the grid, but for its ends.
+        self.assertAlmostEqual(rms, np.sqrt(np.mean(half ** 2)),
+                               delta=0.1 * rms)
+        unknown, one = self.plan("one.json")
+        self.assertIsNone(one["hysteresis_rms_deg_per_s"])
+        self.assertIn("has a hysteresis, and the population was not swept both "
+                      "ways", unknown.stderr)
+        self.assertGreater(both["expected_rms_deg_per_s"]["median"],
+                           1.2 * one["expected_rms_deg_per_s"]["median"])
+
+    def test_a_hysteresis_of_other_devices_is_refused(self):
+        whole = self.json("both.json")
+        del whole["population"]["hysteresis"][0]
+        self.write("edited.json", json.dumps(whole))
+        self.rejected("plan", "edited.json", "--soaks", "2",
+                      says="that have coefficients")
