@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dataset/netcdf/hdf5_bytes.h"
+#include "dataset/netcdf/hdf5_datatype.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -17,7 +18,8 @@ using Bytes = std::span<const std::byte>;
 
 constexpr std::string_view kHeader = "OHDR", kContinuation = "OCHK";
 constexpr std::size_t kSignature = 4, kSum = 4;
-constexpr std::uint64_t kAttributeKind = 0x0c, kContinuationKind = 0x10;
+constexpr std::uint64_t kTypeKind = 0x03, kAttributeKind = 0x0c,
+                        kContinuationKind = 0x10;
 constexpr std::uint64_t kShared = 0x02;      // flag of a message
 constexpr std::size_t kMostBytes = 1 << 24;  // of messages in one piece
 constexpr std::size_t kMostContinuations = 1000;
@@ -34,18 +36,35 @@ struct Message {
   Bytes body;
 };
 
-/// The parts of an attribute end within its message.
+/// The parts of an attribute end within its message, and its type within its
+/// part.
 bool is_sound_attribute(const Message& message) {
-  constexpr std::size_t kParts = 8;
+  constexpr std::size_t kParts = 8, kNameSize = 2, kTypeSize = 4,
+                        kShapeSize = 6;
+  constexpr std::uint64_t kSharedType = 0x01;  // flag of an attribute
   const Bytes body = message.body;
   if ((message.flags & kShared) != 0 || body.size() < kParts) return false;
   const std::uint64_t version = little_number(body, 0, 1);
-  std::uint64_t end = version == 3 ? kParts + 1 : kParts;
-  for (const std::size_t part : {2, 4, 6}) {
+  const auto room_of = [&](std::size_t part) {
     const std::uint64_t size = little_number(body, part, 2);
-    end += version == 1 ? (size + 7) / 8 * 8 : size;
-  }
-  return end <= body.size();
+    return version == 1 ? (size + 7) / 8 * 8 : size;
+  };
+  const std::uint64_t type =
+      (version == 3 ? kParts + 1 : kParts) + room_of(kNameSize);
+  if (type + room_of(kTypeSize) + room_of(kShapeSize) > body.size())
+    return false;
+  const bool is_shared =
+      version > 1 && (little_number(body, 1, 1) & kSharedType) != 0;
+  return is_shared || is_sound_datatype(body.subspan(
+                          type, little_number(body, kTypeSize, 2)));
+}
+
+/// Whether HDF5 finds all that it looks for within a message.
+bool is_sound_message(const Message& message) {
+  if (message.kind == kAttributeKind) return is_sound_attribute(message);
+  if (message.kind == kTypeKind && (message.flags & kShared) == 0)
+    return is_sound_datatype(message.body);
+  return true;
 }
 
 /// The messages of a header; nothing for one that is cut off.
@@ -118,8 +137,7 @@ bool ObjectHeaders::are_sound(std::uint64_t place, Bytes bytes, bool is_header,
     while (rest.size() >= from.head_bytes) {
       const std::optional<Message> message = take_message(rest, from);
       if (!message) break;  // a gap at the end, or what HDF5 refuses
-      if (message->kind == kAttributeKind && !is_sound_attribute(*message))
-        return false;
+      if (!is_sound_message(*message)) return false;
       if (message->kind != kContinuationKind) continue;
       const std::optional<Messages> next = continued(from, *message);
       if (!next) return false;

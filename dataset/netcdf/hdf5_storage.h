@@ -15,6 +15,12 @@ namespace beamgyro::internal {
 ///   claims of a variable with the size of the file.
 void check_storage(hid_t variable, const std::string& name);
 
+/// Checks the chunks of one row of a variable of one or two dimensions, those
+/// of one dimension all of them. Throws Hdf5Error for one that was not deflated
+/// and has fewer bytes than it claims; check_storage() looks at variables of
+/// one dimension.
+void check_chunks_of_row(hid_t variable, const std::string& name, hsize_t row);
+
 /// Throws Hdf5Error: the values of `name` are in other files.
 [[noreturn]] void reject_view(const std::string& name);
 

@@ -9,7 +9,10 @@ import subprocess
 import time
 
 from program import (IDENTITY, PATIENCE, PROGRAM, ROOT, SCENARIO, ProgramTest,
-                     processes, said)
+                     processes, said, without_landlock)
+
+# Isolated code cannot leave its session.
+ISOLATED_OR_NOT = (None, without_landlock)
 
 # A process that leaves its group and its session, and whose parent ends.
 STRAYING = """\
@@ -87,10 +90,11 @@ class LeftBehind(ProgramTest):
         return f"cmd:/usr/bin/python3 {shlex.quote(str(self.dir / name))}"
 
     def test_what_a_command_started_ends_with_it(self):
-        self.ok("compensate", self.script("straying.py"), "run.h5", "-o",
-                "out.h5", env=self.environment())
-        self.assertEqual(processes(str(self.dir / "straying.py")), [])
-        self.assertEqual(list((self.dir / "folders").iterdir()), [])
+        for first in ISOLATED_OR_NOT:
+            self.ok("compensate", self.script("straying.py"), "run.h5", "-o",
+                    "out.h5", env=self.environment(), preexec_fn=first)
+            self.assertEqual(processes(str(self.dir / "straying.py")), [])
+            self.assertEqual(list((self.dir / "folders").iterdir()), [])
 
     def test_what_a_library_started_ends_with_it(self):
         example = ROOT / "examples/plugins/cubic.c"
@@ -98,8 +102,10 @@ class LeftBehind(ProgramTest):
                                                           str(example)))
         said("cc", "-shared", "-fPIC", f"-I{ROOT}/include", "straying.c", "-o",
              "straying.so", "-lm", cwd=self.dir)
-        self.ok("compensate", "./straying.so", "run.h5", "-o", "out.h5")
-        self.assertEqual(processes(str(self.dir / "straying.so")), [])
+        for first in ISOLATED_OR_NOT:
+            self.ok("compensate", "./straying.so", "run.h5", "-o", "out.h5",
+                    preexec_fn=first)
+            self.assertEqual(processes(str(self.dir / "straying.so")), [])
 
     def test_a_killed_program_leaves_nothing(self):
         for by in (signal.SIGKILL, signal.SIGTERM):

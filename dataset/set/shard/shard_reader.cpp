@@ -18,6 +18,7 @@
 #include "dataset/netcdf/hdf5_driver.h"
 #include "dataset/netcdf/hdf5_id.h"
 #include "dataset/netcdf/hdf5_read.h"
+#include "dataset/netcdf/hdf5_storage.h"
 #include "dataset/recording/recording_defect.h"
 #include "dataset/recording/signals.h"
 #include "dataset/recording/units.h"
@@ -229,6 +230,7 @@ class ShardFile::File {
     // read_head() has looked at what it claims.
     const H5Id variable(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose,
                         action);
+    check_chunks_of_row(variable, name, position);
     const H5Id there(H5Dget_space(variable), H5Sclose, action);
     const std::array<hsize_t, 2> start = {position, 0};
     const std::array<hsize_t, 2> count = {1, length};
