@@ -100,7 +100,8 @@ def _values(variable: Any, key: str, name: str) -> Values:
     attributes = getattr(variable, "attrs", {})
     values = np.asarray(variable)
     if isinstance(variable, np.ma.MaskedArray):
-        values = np.ma.filled(variable.astype(float), np.nan)
+        masked: Any = variable  # NumPy has no types for it
+        values = masked.astype(float).filled(np.nan)
     if values.dtype.kind == "m":  # as xarray decodes the time
         return values / np.timedelta64(1, "ns") * 1e-9
     if values.ndim != 1:
@@ -157,6 +158,20 @@ def draw(figure: Figure, runs: Sequence[Run]) -> None:
         _draw_one(figure, runs[0])
     else:
         _draw_several(figure, runs)
+
+
+def draw_panel(axes: Axes, run: Run, panel: str) -> None:
+    """One panel of a recording, in axes of the user's."""
+    panels = _panels_of(run)
+    if panel not in panels:
+        raise PlotError(f"panel {panel!r}: is not one of this recording; "
+                        f"expected one of {', '.join(panels)}")
+    unit, scale = time_unit(float(run.time[-1] - run.time[0]))
+    _PANELS[panel](axes, run, scale)
+    _shade(axes, run, scale)
+    axes.legend(handles=[*axes.get_legend_handles_labels()[0],
+                         *_patches(run)])
+    _time_axis([axes], [run], unit, scale)
 
 
 def height(runs: Sequence[Run]) -> float:

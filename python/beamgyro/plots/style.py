@@ -5,9 +5,12 @@ from __future__ import annotations
 
 import collections
 import functools
+import importlib
+import io
 import os
 import pathlib
 import re
+import sys
 import textwrap
 from typing import Any, ContextManager, Sequence
 
@@ -36,6 +39,7 @@ BEFORE, AFTER, TRUTH = ORANGE, BLUE, BLACK
 RESULTS = {"pass": BLUE, "fail": ORANGE, "undecided": GREY, None: BLACK}
 
 WIDTH = 8.0  # [inch]
+NOTEBOOK_DPI = 100
 LETTERS_PER_INCH = 14  # of the words below a title
 LONGEST_TITLE = 75
 FONT = "DejaVu Sans"  # comes with matplotlib
@@ -77,8 +81,27 @@ def look() -> ContextManager[None]:
     return context
 
 
-def new_figure(height: float, width: float = WIDTH) -> Figure:
-    return Figure(figsize=(width, height), layout="constrained")
+class Picture(Figure):  # type: ignore[misc]
+    """A figure that shows itself in a notebook, with or without pyplot."""
+
+    def _repr_png_(self) -> bytes:
+        written = io.BytesIO()
+        with look():
+            self.savefig(written, format="png", metadata=METADATA["png"],
+                         dpi=NOTEBOOK_DPI)
+        return written.getvalue()
+
+    def show(self, warn: bool = True) -> None:
+        """Show it where the notebook is; elsewhere as matplotlib does."""
+        if "ipykernel" in sys.modules:
+            display: Any = importlib.import_module("IPython.display")
+            display.display(self)
+        else:
+            super().show(warn)
+
+
+def new_figure(height: float, width: float = WIDTH) -> Picture:
+    return Picture(figsize=(width, height), layout="constrained")
 
 
 def _name_curves(figure: Figure) -> None:
