@@ -5,6 +5,7 @@ the channels of the drive loop over time."""
 from __future__ import annotations
 
 import csv
+import re
 import pathlib
 from typing import Any, Mapping, Sequence
 
@@ -40,6 +41,7 @@ class Run:
         self.name = name
         place = name or "recording"
         self.title = hdf5.text_of(attributes.get("title", ""))
+        self.device = device_of(data, attributes)
         self.compensator = hdf5.text_of(attributes.get("compensator", ""))
         self.values = {key: _values(data[key], key, place)
                        for key in ("time", *DRAWN) if key in data}
@@ -86,6 +88,23 @@ class Run:
     def turns(self) -> bool:
         truth = self.values.get("true_rate")
         return truth is not None and bool(np.any(truth != 0))
+
+
+def device_of(data: Mapping[Any, Any], attributes: Mapping[str, Any]) -> str:
+    """The device of a simulated run with its seed; of another run nothing."""
+    source = hdf5.text_of(attributes.get("source", ""))
+    if "virtual gyro" not in source:
+        return ""
+    words = "virtual gyro"
+    scenario = getattr(data, "encoding", {}).get("beamgyro", {}).get("scenario")
+    if scenario is None and "meta/scenario" in data:
+        scenario = hdf5.text_of(data["meta/scenario"][()])
+    named = re.search(r'^device\s*=\s*"(?:[^"]*/)?([^"/]+)\.toml"',
+                      scenario or "", re.MULTILINE)
+    if named:
+        words += f" {named[1]}"
+    return f"{words}, seed {attributes['seed']}" if "seed" in attributes \
+        else words
 
 
 def _status(values: Values, name: str) -> npt.NDArray[np.uint8]:
@@ -203,7 +222,7 @@ def _draw_one(figure: Figure, run: Run) -> None:
         _shade(axes, run, scale)
         style.legend_above(axes, extra=_patches(run) if axes is rows[0] else ())
     _time_axis(rows, [run], unit, scale)
-    words = [run.title] if run.title else []
+    words = [part for part in (run.title, run.device) if part]
     if run.compensator:
         words.append(f"compensated by {run.compensator}")
     if run.bins.merged:
