@@ -46,6 +46,9 @@ SETTINGS
 /usr/bin/python3 "$root/docs/site/pages.py" "$output/doxygen/xml" \
   "$output/source" 2>>"$output/log" || fail "the pages cannot be laid out"
 
+PYTHONPATH=$build/python /usr/bin/python3 "$root/docs/site/notebooks.py" \
+  "$output/source/notebooks" >>"$output/log" 2>&1 || fail "a notebook does not run"
+
 /usr/bin/python3 -m sphinx -W --keep-going -q -b html -d "$output/doctrees" \
   "$output/source" "$output/html" >>"$output/log" 2>&1 ||
   fail "sphinx found faults"

@@ -47,6 +47,11 @@ def titled(axes, title, about):
               color=WORDS, va="bottom")
 
 
+def signed(value):
+    """A number with the minus sign that axes have."""
+    return f"{value:+.3f}".replace("-", "−")
+
+
 def save(figure, folder, name):
     for suffix in style.FORMATS:
         style.save(figure, folder / f"{name}.{suffix}", dpi=DPI)
@@ -93,11 +98,12 @@ def warm_up(folder):
     final = bias[-1]
     outside = np.abs(bias - final) > 0.05 * abs(bias[0] - final)
     settled = minutes[np.flatnonzero(outside)[-1]]
-    top.plot(minutes, rate, ",", color=PALE, rasterized=True)
+    top.plot(minutes, rate, ".", ms=1, color=PALE, rasterized=True)
     top.plot([], [], ".", color=PALE, label="10 Hz samples")
     top.plot(mean_time / 60, mean_rate, ".", color=BLUE, label="60 s means")
     top.plot(minutes, bias + offset, color=ORANGE, lw=2,
-             label="true drift, shifted to the mean of the last 10 min")
+             label=f"true drift, moved by {signed(offset)} °/s to the means at "
+                   "the end")
     low, high = np.percentile(rate, [0.02, 99.98])
     titled(top, "Virtual gyro after power-on, still air at 25 °C",
            "run with noise; the true drift is what the same gyro shows "
@@ -153,7 +159,7 @@ def fit(folder, method, title, name):
     top.legend(loc="best")
     mean, sigma = residual.mean(), residual.std()
     bottom.axhspan(mean - sigma, mean + sigma, color=PALE, lw=0,
-                   label=f"mean {mean:+.3f} ± 1σ {sigma:.3f} °/s")
+                   label=f"mean {signed(mean)} ± 1σ {sigma:.3f} °/s")
     bottom.axhline(mean, color=WORDS, lw=0.8, ls="--")
     bottom.plot(temperature, residual, ".", ms=3, color=BLUE)
     low, high = bottom.get_ylim()
@@ -268,7 +274,8 @@ def with_modes(folder):
 
 def recommended(folder):
     """What the recommended network makes of motions that it never saw."""
-    figure, panels = pyplot.subplots(2, 2, figsize=(9.2, 5.6), sharex="col")
+    figure, panels = pyplot.subplots(2, 2, figsize=(9.2, 5.8), sharex="col")
+    reaches = []
     for (top, bottom), name, title, scale, unit in zip(
             panels.T, ["ramp_0.75", "warm_up_25"],
             ["chamber ramp, 0.75 K/min", "warm-up in still air at 25 °C"],
@@ -289,13 +296,18 @@ def recommended(folder):
         bottom.axhline(0, color=WORDS, lw=0.8)
         titled(top, f"Before: {title}", "held-out run at rest")
         titled(bottom, "After the recommended network",
-               f"1σ {sigma:.4f} °/s without noise (band), "
-               f"{residuals[0].std():.4f} °/s with it")
-        reach = 1.5 * max(np.abs(part).max() for part in residuals)
-        bottom.set(xlabel=f"time [{unit}]", ylim=(-reach, reach))
+               f"1σ {sigma:.4f} °/s (band); with noise "
+               f"{residuals[0].std():.4f}, mean {signed(residuals[0].mean())} °/s")
+        reaches.append(1.5 * max(np.abs(part).max() for part in residuals))
+        bottom.set(xlabel=f"time [{unit}]")
         bottom.axhspan(mean - sigma, mean + sigma, color=PALE, lw=0)
+    for axes in panels[1]:  # one scale, so that the two can be compared
+        axes.set_ylim(-max(reaches), max(reaches))
     panels[0, 0].set_ylabel("rate at rest [°/s]")
     panels[1, 0].set_ylabel("compensated [°/s]")
+    figure.suptitle("Virtual gyro at rest. With noise each run has a turn-on "
+                    "offset of its own, which no temperature tells: the mean of "
+                    "the grey points", fontsize=9.5, color=WORDS)
     panels[1, 0].legend(loc="upper left", fontsize=8.5, ncols=2)
     save(figure, folder / "more", "recommended_network")
 
@@ -324,6 +336,8 @@ def trap(folder):
         titled(axes, title, "held-out run without noise, mean of each rate")
         axes.set(xlabel="true rate [°/s]", xlim=(-limit, limit),
                  ylim=(-limit, limit))
+    figure.suptitle("The trap: a network that sees the output takes the rate for "
+                    "drift, and cancels it", fontsize=11)
     panels[0].set_ylabel("compensated rate [°/s]")
     panels[1].legend(loc="upper left", fontsize=9)
     save(figure, folder / "more", "trap")

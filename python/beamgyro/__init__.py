@@ -17,7 +17,7 @@ xarray, pandas and matplotlib are imported when they are first needed.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from beamgyro._analysis import allan, plan, sensitivity
 from beamgyro._compensation import Compensator, compensate
@@ -47,8 +47,15 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    if name == "plots":
-        from importlib import import_module
-        return import_module("beamgyro.plots")
-    raise AttributeError(f"module 'beamgyro' has no attribute {name!r}")
+if TYPE_CHECKING:
+    # A module-level __getattr__ would let every misspelt name pass.
+    from beamgyro import plots as plots
+else:
+    def __getattr__(name):
+        if name == "plots":
+            from importlib import import_module
+            return import_module("beamgyro.plots")
+        raise AttributeError(f"module 'beamgyro' has no attribute {name!r}")
+
+    def __dir__():
+        return [*__all__, "plots"]

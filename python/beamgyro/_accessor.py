@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any, Optional
 
 import xarray
 
@@ -12,6 +12,10 @@ from beamgyro._analysis import allan
 from beamgyro._compensation import compensate
 from beamgyro._dataset import Path, save_recording, warn_of_lost_units
 from beamgyro._results import AllanResult
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 
 class RecordingAccessor:
@@ -38,11 +42,21 @@ class RecordingAccessor:
         """Write the recording; see `beamgyro.save_recording`."""
         save_recording(self._dataset, path)
 
-    def plot(self, **options: Any) -> Any:
-        """Draw the recording, and return the figure of matplotlib."""
+    def plot(self, ax: Optional[Axes] = None, panel: str = "rate") -> Figure:
+        """Draw the recording, and return the figure of matplotlib.
+
+        Args:
+            ax: axes of yours, in which one panel is drawn; without it a new
+                figure has all of them, and a notebook shows it.
+            panel: which one: "rate", "error", "left" (what a compensator
+                leaves), "temperature", "drive_frequency" or "quadrature".
+        """
         _lazy.module("matplotlib")
         warn_of_lost_units(self._dataset)
-        return _lazy.module("beamgyro.plots").plot(self._dataset, **options)
+        plots = _lazy.module("beamgyro.plots")
+        drawn: Figure = plots.plot(self._dataset) if ax is None else \
+            plots.plot_recording(self._dataset, ax=ax, panel=panel)
+        return drawn
 
 
 def _register() -> None:

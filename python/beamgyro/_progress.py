@@ -3,17 +3,60 @@
 
 from __future__ import annotations
 
+import importlib
+import importlib.util
 import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Optional, Union
+from typing import Any, Optional, Union
 
 ProgressFunction = Callable[[float], object]
 ProgressArgument = Union[bool, ProgressFunction, None]
 
 _DELAY_S = 2.0
 _WIDTH = 30
+
+
+class NotebookBar:
+    """A bar of tqdm in the cell, for work of more than two seconds."""
+
+    def __init__(self, title: str, tqdm: Callable[..., Any]) -> None:
+        self._title = title
+        self._tqdm = tqdm
+        self._start = time.monotonic()
+        self._bar: Any = None
+
+    def __call__(self, share: float) -> None:
+        """Show the share of the work that is done, 0 to 1."""
+        if self._bar is None:
+            if time.monotonic() - self._start < _DELAY_S:
+                return
+            self._bar = self._tqdm(
+                total=100, desc=self._title, leave=False, mininterval=0,
+                bar_format="{desc} {bar} {percentage:3.0f} %, {remaining} left")
+        done = round(100 * share)
+        if done != self._bar.n:
+            self._bar.update(done - self._bar.n)
+
+    def close(self) -> None:
+        """Remove the bar."""
+        if self._bar is not None:
+            self._bar.close()
+
+
+def notebook_tqdm() -> Optional[Callable[..., Any]]:
+    """Return tqdm for a notebook: with widgets where they are, else as text;
+    None where there is no notebook or no tqdm."""
+    if "ipykernel" not in sys.modules:
+        return None
+    kind = "notebook" if importlib.util.find_spec("ipywidgets") else "std"
+    try:
+        found: Callable[..., Any] = \
+            importlib.import_module(f"tqdm.{kind}").tqdm
+    except ImportError:
+        return None
+    return found
 
 
 class Bar:
@@ -48,6 +91,11 @@ class Bar:
             self._shown = ""
 
 
+def _bar(title: str) -> Union[Bar, NotebookBar]:
+    tqdm = notebook_tqdm()
+    return Bar(title) if tqdm is None else NotebookBar(title, tqdm)
+
+
 @contextmanager
 def watched(progress: ProgressArgument, title: str
             ) -> Iterator[Optional[ProgressFunction]]:
@@ -58,7 +106,7 @@ def watched(progress: ProgressArgument, title: str
     if not (progress is None or isinstance(progress, bool)):
         raise ValueError(f"progress {progress!r}: expected True, False or "
                          "a function of the share that is done")
-    bar = Bar(title) if progress else None
+    bar = _bar(title) if progress else None
     try:
         yield bar
     finally:

@@ -3,23 +3,12 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Sequence
 from typing import Any, Optional
 
 from beamgyro._compensation import Compensator
-from beamgyro._results import Report, table
-
-
-def figure(estimate: Any) -> str:
-    """Return a figure with its interval, as text."""
-    if not isinstance(estimate, dict) or estimate.get("value") is None:
-        return ""
-    interval = estimate.get("interval")
-    value = f"{estimate['value']:.4g}"
-    if not interval or interval[0] is None or interval[1] is None:
-        return value
-    return f"{value} ({interval[0]:.4g} to {interval[1]:.4g})"
+from beamgyro._results import Report
+from beamgyro._validation_html import page
 
 
 class ValidationResult(Report):
@@ -69,12 +58,4 @@ class ValidationResult(Report):
         return self._junit
 
     def _repr_html_(self) -> str:
-        metrics = [(one["name"], one["unit"], figure(one.get("before")),
-                    figure(one.get("after")), str(one.get("result") or ""))
-                   for one in self._metrics()]
-        checks = [(one["name"], str(one.get("words") or ""))
-                  for one in self.data["checks"]]
-        return (f"<p><b>{html.escape(self.verdict)}</b></p>"
-                + table(("metric", "unit", "before", "after", "result"),
-                        metrics)
-                + table(("check", "outcome"), checks))
+        return page(self.data)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The functions that draw, called from Python with plain data."""
 
+import itertools
 import json
 import re
 import sys
@@ -9,12 +10,14 @@ import unittest
 import h5py
 import numpy as np
 import xarray
+from matplotlib.figure import Figure
 
 from program import (CUBIC, NETWORK, PROGRAM, ROOT, SCENARIOS, ProgramTest,
                      ramp)
 
 sys.path.insert(0, str(PROGRAM.parent / "python"))
 from beamgyro import plots  # noqa: E402  (where it is comes first)
+from beamgyro.plots import style  # noqa: E402
 from beamgyro.plots.envelope import bins_of, envelope, spans  # noqa: E402
 
 MODELS = SCENARIOS / "models"
@@ -161,7 +164,94 @@ class Validations(ProgramTest):
         self.assertIn("Φ(residual / σ)", labels)
 
 
+    def test_every_panel_says_what_its_curves_are(self):
+        self.cubic_of_a_ramp("train")
+        for number, low in enumerate((-20, 0, 15)):
+            self.run_scenario(f"ramp{number}", text=ramp(
+                seed=5 + number, low=low))
+        self.ended("validate", "c.json", "ramp0.h5", "ramp1.h5", "ramp2.h5",
+                   "--spec", ROOT / "specs/uav.toml", "--json", "v.json",
+                   allowed=(3,))
+        result = json.loads((self.dir / "v.json").read_text())
+        figure = plots.plot_validation(result)
+        drawn = {axes.get_title("left"): axes for axes in figure.axes}
+        seen = 0
+        for one in result["figures"]:
+            axes = drawn.get(style.spoken(one["title"]))
+            others = {series["name"].removeprefix("after, ")
+                      for series in one["series"]} - {"before", "after"}
+            others = {name for name in others
+                      if not name.startswith("before, ")}
+            if axes is None or not others or len(one["series"]) < 2:
+                continue
+            seen += 1
+            said = {text.get_text().removeprefix("after, ")
+                    for text in axes.get_legend().get_texts()}
+            self.assertLessEqual({style.spoken(name) for name in others}, said)
+        self.assertGreater(seen, 1)
+
+    def test_a_limit_that_no_run_shows_is_drawn_as_undecided(self):
+        self.cubic_of_a_ramp("train")
+        self.run_scenario("check", text=ramp(seed=5))
+        self.ended("validate", "c.json", "check.h5", "--spec",
+                   ROOT / "specs/uav.toml", "--json", "v.json", allowed=(3,))
+        result = json.loads((self.dir / "v.json").read_text())
+        without = [one for one in result["limits"]
+                   if (one["compared"] or {}).get("value") is None]
+        self.assertGreater(len(without), 0)
+        axes = plots.plot_validation(result).axes[0]
+        self.assertEqual(len(axes.get_yticks()), len(result["limits"]))
+        said = [text.get_text() for text in axes.texts]
+        self.assertEqual(said.count("undecided: no run shows it"),
+                         len(without))
+
+
+class Ticks(unittest.TestCase):
+    """Of a logarithmic axis, whatever it spans."""
+
+    def test_numbers_never_lie_over_each_other(self):
+        random = np.random.default_rng(1)
+        spans = [(0.011, 0.09), (0.05, 0.09), (1e-3, 20.0), (1e-9, 1e9),
+                 (0.97, 1.02), (2.0, 3.0)]
+        for decades in (0.02, 0.1, 0.3, 0.7, 1, 2, 4, 8, 15):
+            for low in 10 ** random.uniform(-9, 6, 4):
+                spans.append((low, low * 10**decades))
+        for low, high in spans:
+            with plots.look():
+                figure = Figure(figsize=(style.WIDTH / 2, 1.8), layout="constrained")
+                axes = figure.subplots()
+                for axis in (axes.xaxis, axes.yaxis):
+                    style.log_scale(axis)
+                axes.set(xlim=(low, high), ylim=(low, high))
+                figure.draw_without_rendering()
+                for axis in (axes.xaxis, axes.yaxis):
+                    boxes = [label.get_window_extent()
+                             for label in axis.get_ticklabels()
+                             if label.get_text()]
+                    self.assertGreaterEqual(len(boxes), 2, (low, high))
+                    for box, other in itertools.combinations(boxes, 2):
+                        self.assertFalse(box.overlaps(other),
+                                         (low, high, axis.axis_name))
+
+
 class Allan(unittest.TestCase):
+    def test_it_has_the_units_of_data_sheets_beside_its_own(self):
+        points = [{"tau_s": 2.0**k, "deviation": 0.01 / 2**(k / 2)}
+                  for k in range(6)]
+        noise = {"N": {"per_second": {"value": 0.01, "unit": "deg/sqrt(s)"}}}
+        figure = plots.plot_allan({"oadev": points, "noise": noise})
+        right, = figure.axes[0].child_axes
+        self.assertEqual(right.get_ylabel(), "[°/h]")
+        figure.draw_without_rendering()
+        np.testing.assert_allclose(
+            right.get_ylim(), 3600 * np.array(figure.axes[0].get_ylim()))
+        self.assertIn("N = 0.01 °/√s (0.6 °/√h)", "".join(
+            text.get_text() for text in figure.texts))
+        volts = plots.plot_allan({"oadev": points, "series": {
+            "dataset": "output", "unit": "V", "rate_Hz": 1.0, "from_s": 0.0,
+            "to_s": 9.0, "samples": 10}})
+        self.assertEqual(volts.axes[0].child_axes, [])
+
     def test_a_line_of_another_height_than_its_letter_says_so(self):
         figure = plots.plot_allan({
             "oadev": [{"tau_s": tau, "deviation": 0.7}

@@ -69,7 +69,8 @@ class Recordings(PlotTest):
 
     def test_a_run_at_rest(self):
         svg = self.picture("rest.h5")
-        self.says(svg, "rest.h5", "rate at rest [°/s]", "temp. [°C]",
+        self.says(svg, "rest.h5", "virtual gyro device, seed 7",
+                  "rate at rest [°/s]", "temp. [°C]",
                   "drive [Hz]", "quad. [°/s]", "time [min]", "sensor", "beam")
         self.assertEqual(
             curves(svg)[:2], ["curve-1-measured",
@@ -242,7 +243,7 @@ class Results(PlotTest):
                 "oadev,adev,hdev")
         svg = self.picture("a.json")
         self.says(svg, "deviation [°/s]", "averaging time τ [s]", "N = ",
-                  "over 9.99 min")
+                  "9.99 min", "[°/h]", "°/√h")
         self.assertEqual(curves(svg), [
             "curve-1-overlapping-Allan-deviation", "curve-1-Allan-deviation",
             "curve-1-Hadamard-deviation"])
@@ -329,7 +330,8 @@ class Sets(PlotTest):
     def test_a_population_and_its_plan(self):
         population_of(self.dir, devices=30)
         self.says(self.picture("population.json"), "population of ",
-                  "bias [°/s]", "quadrature [°/s]", "mean of the devices")
+                  "bias [°/s]", "quadrature [°/s]", "mean of the devices",
+                  "change of bias [°/s]", "change of quadrature [°/s]")
         self.ok("plan", "population.json", "--soaks", "3", "--json", "plan.json",
                 "--picture", "drawn by plan.svg")
         svg = self.picture("plan.json")

@@ -72,6 +72,12 @@ class Site(unittest.TestCase):
                 re.findall(r'(?:src="|<link[^>]*href=")(?:https?:)?//'
                            r'[^"]*', text), [])
 
+    def test_the_notebooks_were_run_and_show_what_they_draw(self):
+        for notebook in (ROOT / "examples/python").glob("*.ipynb"):
+            page = (self.site / f"notebooks/{notebook.stem}.html").read_text()
+            self.assertIn(f"_images/{notebook.stem}_", page)
+            self.assertIn("<b>Checks</b>", page)
+
     def test_the_reference_of_python_has_every_public_name(self):
         init = (BUILD / "python/beamgyro/__init__.py").read_text()
         public = re.findall(r'"(\w+)"',

@@ -15,11 +15,12 @@ import os
 import pathlib
 from typing import Any, Mapping, Sequence, Union
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .documents import PlotError
 from .kinds import KINDS, figure_of, kind_of
-from .recording import Run
+from .recording import Run, draw_panel
 from .style import look, names_of, save
 from .table import columns_of as table_columns
 
@@ -27,6 +28,7 @@ __all__ = ["PlotError", "kind_of", "plot", "plot_allan", "plot_compensator",
            "plot_plan", "plot_recording", "plot_sensitivity", "plot_table",
            "plot_validation", "save", "save_each"]
 
+CHARACTERISTIC = "beamgyro-characteristic"  # of the dataset of characterise
 Path = Union[str, "os.PathLike[str]"]
 
 
@@ -39,6 +41,8 @@ def plot(files: Path | Sequence[Path] | Mapping[Any, Any],
     if not isinstance(compare, bool):
         raise PlotError(f"compare {compare!r}: expected True or False")
     if isinstance(files, Mapping):
+        if getattr(files, "attrs", {}).get("filetype") == CHARACTERISTIC:
+            return plot_table(files)
         return plot_recording(files)
     given = _several(files)
     if compare and given and all(isinstance(one, Mapping) for one in given):
@@ -116,9 +120,17 @@ def _plotted_documents(kind: str, data: Sequence[Any], names: Sequence[str]
                             for one, name in zip(data, names)), places=names)
 
 
-def plot_recording(*recordings: Any, names: Sequence[str] = ()) -> Figure:
+def plot_recording(*recordings: Any, names: Sequence[str] = (),
+                   ax: Axes | None = None, panel: str = "rate") -> Figure:
     """One recording, or several over each other: xarray.Dataset, or mappings
-    from the names of variables to arrays in deg/s, degC, Hz and s."""
+    from the names of variables to arrays in deg/s, degC, Hz and s. With `ax`
+    one panel of one recording is drawn there: rate, error, left (what a
+    compensator leaves), temperature, drive_frequency or quadrature."""
+    if ax is not None:
+        if len(recordings) != 1:
+            raise PlotError(f"ax: {len(recordings)} recordings; expected one")
+        draw_panel(ax, Run(recordings[0], ""), panel)
+        return ax.figure
     names = [*names, *[f"recording {k + 1}" if len(recordings) > 1 else ""
                        for k in range(len(names), len(recordings))]]
     return _plotted("recording", *map(Run, recordings, names))

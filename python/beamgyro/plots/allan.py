@@ -30,6 +30,10 @@ DRAWN = {"B": "0.664 B"}  # where a line has another height than its letter
 UNITS = {"Q": ("deg", " s"), "N": ("deg/sqrt(s)", " sqrt(s)"),
          "B": ("deg/s", ""), "K": ("deg/s/sqrt(s)", "/sqrt(s)"),
          "R": ("deg/s/s", "/s")}
+RATE, HOUR = "deg/s", 3600.0
+# Of rates: the factor and the unit of data sheets.
+PER_HOUR = {"N": (60.0, "°/√h"), "B": (HOUR, "°/h"),
+            "K": (60 * HOUR, "°/h/√h"), "R": (HOUR**2, "°/h²")}
 HEIGHT = 5.2
 
 
@@ -59,7 +63,7 @@ SHAPE = both(record({}, {
 
 
 def _unit(data: Mapping[str, Any]) -> str:
-    return str((data.get("series") or {}).get("unit", "deg/s"))
+    return str((data.get("series") or {}).get("unit", RATE))
 
 
 def _term(data: Mapping[str, Any], symbol: str) -> Mapping[str, Any] | None:
@@ -152,10 +156,30 @@ def draw(figure: Figure, results: Sequence[Mapping[str, Any]]) -> None:
     style.log_scale(axes.yaxis,
                     (1, 2, 5) if max(shown) < 100 * min(shown) else ())
     axes.set_ylim(min(shown) / 3, max(shown) * 3)
+    if units[0] == RATE:
+        _axis_per_hour(axes)
     if len(results) == 1:
         _terms(axes, results[0], kinds[0])
     style.legend_above(axes, 3)
     _title(figure, results, names)
+
+
+def _axis_per_hour(axes: Axes) -> None:
+    """As data sheets have it, at the right."""
+    right = axes.secondary_yaxis("right", functions=(lambda v: v * HOUR,
+                                                     lambda v: v / HOUR))
+    right.set_ylabel("[°/h]")
+    right.spines["right"].set_visible(True)
+    style.log_ticks(right.yaxis)
+
+
+def _in_words(symbol: str, term: Mapping[str, Any]) -> str:
+    """A term in the unit of the series, and in that of data sheets."""
+    words = f"{symbol} = {term['value']:.3g} {style.spoken(term['unit'])}"
+    if term["unit"] != UNITS[symbol][0] or symbol not in PER_HOUR:
+        return words
+    factor, unit = PER_HOUR[symbol]
+    return f"{words} ({factor * term['value']:.3g} {unit})"
 
 
 def _title(figure: Figure, results: Sequence[Mapping[str, Any]],
@@ -166,8 +190,7 @@ def _title(figure: Figure, results: Sequence[Mapping[str, Any]],
         return
     parts = []
     terms = [(symbol, _term(results[0], symbol)) for symbol in TERMS]
-    words = [f"{symbol} = {term['value']:.3g} {style.spoken(term['unit'])}"
-             for symbol, term in terms if term]
+    words = [_in_words(symbol, term) for symbol, term in terms if term]
     if words:
         parts.append(f"dotted: fitted noise, {', '.join(words)}")
     series = results[0].get("series")

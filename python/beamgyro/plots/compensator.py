@@ -198,17 +198,18 @@ def _population(figure: Figure, one: Document) -> None:
     for row, name, middle, sd, parts in zip(grid, names, mean, spread,
                                             modes.swapaxes(0, 1)):
         row[0].fill_between(T, middle - 2 * sd, middle + 2 * sd, lw=0,
-                            color=style.AFTER, alpha=0.15, label="±2σ")
+                            color=style.AFTER, alpha=0.2, label="±2σ")
         row[0].fill_between(T, middle - sd, middle + sd, lw=0,
-                            color=style.AFTER, alpha=0.3, label="±1σ")
+                            color=style.AFTER, alpha=0.35, label="±1σ")
         row[0].plot(T, middle, color=style.AFTER, label="mean of the devices")
         for k, mode in enumerate(strongest):
             row[1].plot(T, parts[mode], color=style.COLORS[k],
                         ls=style.DASHES[k],
                         label=("1st", "2nd", "3rd", "4th")[k])
         row[1].axhline(0, color=style.GREY, lw=0.8)
-        row[0].set_ylabel(style.quantity(name.replace("_", " "),
-                                         unit_of(name)))
+        words = style.quantity(name.replace("_", " "), unit_of(name))
+        row[0].set_ylabel(words)
+        row[1].set_ylabel(f"change of {words}")
     style.legend_above(grid[0, 0])
     style.legend_above(grid[0, 1])
     for axes in grid[-1]:

@@ -210,7 +210,7 @@ def _spread(axes: Axes, run: SetRun) -> None:
                       label="each device" if number == 0 else None)
     else:
         axes.plot(time, low, color=style.GREY, lw=0.8)
-        axes.plot(time, high, color=style.GREY, lw=0.8, label="all")
+        axes.plot(time, high, color=style.GREY, lw=0.8, label="lowest and highest")
         axes.fill_between(time, q5, q95, color=style.AFTER, alpha=0.2, lw=0,
                           label="90 of 100")
         axes.fill_between(time, q25, q75, color=style.AFTER, alpha=0.35,

@@ -5,6 +5,7 @@ the channels of the drive loop over time."""
 from __future__ import annotations
 
 import csv
+import re
 import pathlib
 from typing import Any, Mapping, Sequence
 
@@ -40,6 +41,7 @@ class Run:
         self.name = name
         place = name or "recording"
         self.title = hdf5.text_of(attributes.get("title", ""))
+        self.device = device_of(data, attributes)
         self.compensator = hdf5.text_of(attributes.get("compensator", ""))
         self.values = {key: _values(data[key], key, place)
                        for key in ("time", *DRAWN) if key in data}
@@ -88,6 +90,23 @@ class Run:
         return truth is not None and bool(np.any(truth != 0))
 
 
+def device_of(data: Mapping[Any, Any], attributes: Mapping[str, Any]) -> str:
+    """The device of a simulated run with its seed; of another run nothing."""
+    source = hdf5.text_of(attributes.get("source", ""))
+    if "virtual gyro" not in source:
+        return ""
+    words = "virtual gyro"
+    scenario = getattr(data, "encoding", {}).get("beamgyro", {}).get("scenario")
+    if scenario is None and "meta/scenario" in data:
+        scenario = hdf5.text_of(data["meta/scenario"][()])
+    named = re.search(r'^device\s*=\s*"(?:[^"]*/)?([^"/]+)\.toml"',
+                      scenario or "", re.MULTILINE)
+    if named:
+        words += f" {named[1]}"
+    return f"{words}, seed {attributes['seed']}" if "seed" in attributes \
+        else words
+
+
 def _status(values: Values, name: str) -> npt.NDArray[np.uint8]:
     wrong = ~((values >= 0) & (values <= 255) & (values == np.floor(values)))
     if wrong.any():
@@ -100,7 +119,8 @@ def _values(variable: Any, key: str, name: str) -> Values:
     attributes = getattr(variable, "attrs", {})
     values = np.asarray(variable)
     if isinstance(variable, np.ma.MaskedArray):
-        values = np.ma.filled(variable.astype(float), np.nan)
+        masked: Any = variable  # NumPy has no types for it
+        values = masked.astype(float).filled(np.nan)
     if values.dtype.kind == "m":  # as xarray decodes the time
         return values / np.timedelta64(1, "ns") * 1e-9
     if values.ndim != 1:
@@ -159,6 +179,20 @@ def draw(figure: Figure, runs: Sequence[Run]) -> None:
         _draw_several(figure, runs)
 
 
+def draw_panel(axes: Axes, run: Run, panel: str) -> None:
+    """One panel of a recording, in axes of the user's."""
+    panels = _panels_of(run)
+    if panel not in panels:
+        raise PlotError(f"panel {panel!r}: is not one of this recording; "
+                        f"expected one of {', '.join(panels)}")
+    unit, scale = time_unit(float(run.time[-1] - run.time[0]))
+    _PANELS[panel](axes, run, scale)
+    _shade(axes, run, scale)
+    axes.legend(handles=[*axes.get_legend_handles_labels()[0],
+                         *_patches(run)])
+    _time_axis([axes], [run], unit, scale)
+
+
 def height(runs: Sequence[Run]) -> float:
     panels = _panels_of(runs[0]) if len(runs) == 1 else _compared(runs)
     return 1.0 + sum(_SHARES[kind] for kind in panels) * 0.9
@@ -188,7 +222,7 @@ def _draw_one(figure: Figure, run: Run) -> None:
         _shade(axes, run, scale)
         style.legend_above(axes, extra=_patches(run) if axes is rows[0] else ())
     _time_axis(rows, [run], unit, scale)
-    words = [run.title] if run.title else []
+    words = [part for part in (run.title, run.device) if part]
     if run.compensator:
         words.append(f"compensated by {run.compensator}")
     if run.bins.merged:

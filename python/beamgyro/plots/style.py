@@ -5,9 +5,12 @@ from __future__ import annotations
 
 import collections
 import functools
+import importlib
+import io
 import os
 import pathlib
 import re
+import sys
 import textwrap
 from typing import Any, ContextManager, Sequence
 
@@ -36,8 +39,10 @@ BEFORE, AFTER, TRUTH = ORANGE, BLUE, BLACK
 RESULTS = {"pass": BLUE, "fail": ORANGE, "undecided": GREY, None: BLACK}
 
 WIDTH = 8.0  # [inch]
+NOTEBOOK_DPI = 100
 LETTERS_PER_INCH = 14  # of the words below a title
 LONGEST_TITLE = 75
+MOST_DECADES = 6  # that are numbered on one axis
 FONT = "DejaVu Sans"  # comes with matplotlib
 STYLE = {
     "figure.figsize": (WIDTH, 4.5),  # 1600 x 900 pixels
@@ -77,8 +82,27 @@ def look() -> ContextManager[None]:
     return context
 
 
-def new_figure(height: float, width: float = WIDTH) -> Figure:
-    return Figure(figsize=(width, height), layout="constrained")
+class Picture(Figure):  # type: ignore[misc]
+    """A figure that shows itself in a notebook, with or without pyplot."""
+
+    def _repr_png_(self) -> bytes:
+        written = io.BytesIO()
+        with look():
+            self.savefig(written, format="png", metadata=METADATA["png"],
+                         dpi=NOTEBOOK_DPI)
+        return written.getvalue()
+
+    def show(self, warn: bool = True) -> None:
+        """Show it where the notebook is; elsewhere as matplotlib does."""
+        if "ipykernel" in sys.modules:
+            display: Any = importlib.import_module("IPython.display")
+            display.display(self)
+        else:
+            super().show(warn)
+
+
+def new_figure(height: float, width: float = WIDTH) -> Picture:
+    return Picture(figsize=(width, height), layout="constrained")
 
 
 def _name_curves(figure: Figure) -> None:
@@ -153,12 +177,43 @@ def quantity(words: str, unit: str) -> str:
     return f"{words} [{spoken(unit)}]" if unit not in ("", "1") else words
 
 
+class FewLogTicks(ticker.Locator):  # type: ignore[misc]
+    """Powers of ten; within less than two of them 1, 2 and 5 of each, and
+    within less again a few round numbers. matplotlib's own prints up to ten
+    numbers there, over each other."""
+
+    def __init__(self, marks: Sequence[int] = ()) -> None:
+        self._marks: list[Any] = [marks] if marks else [(1,), (1, 2, 5)]
+
+    def __call__(self) -> Any:
+        return self.tick_values(*self.axis.get_view_interval())
+
+    def tick_values(self, vmin: float, vmax: float) -> Any:
+        low, high = sorted((vmin, vmax))
+        if not 0 < low < high < np.inf:
+            return np.array([])
+        first, last = (int(np.floor(np.log10(end))) for end in (low, high))
+        stride = max(1, -(-(last - first) // MOST_DECADES))
+        for marks in self._marks:
+            decades = range(first, last + 1, stride if marks == (1,) else 1)
+            ticks = np.array([mark * 10.0 ** power for power in decades
+                              for mark in marks])
+            ticks = ticks[(ticks >= low) & (ticks <= high)]
+            if len(ticks) > 1:
+                return ticks
+        return ticker.MaxNLocator(3, min_n_ticks=2).tick_values(low, high)
+
+
 def log_scale(axis: Axis, marks: Sequence[int] = ()) -> None:
     """A logarithmic axis with plain numbers: at powers of ten, or at these
     `marks` in every decade."""
     axis.axes.set(**{f"{axis.axis_name}scale": "log"})
-    if marks:
-        axis.set_major_locator(ticker.LogLocator(subs=marks))
+    log_ticks(axis, marks)
+
+
+def log_ticks(axis: Axis, marks: Sequence[int] = ()) -> None:
+    """The numbers of an axis that is logarithmic."""
+    axis.set_major_locator(FewLogTicks(marks))
     axis.set_major_formatter(ticker.FormatStrFormatter("%g"))
     axis.set_minor_formatter(ticker.NullFormatter())
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from typing import Any, Iterator, Mapping, Sequence
 
@@ -25,6 +26,7 @@ SHOWN = ("population_yield", "bias_over_temperature", "warm_up", "hysteresis",
 MOST_SHOWN = 6
 LONGEST_METRIC = 40  # [letters]
 ROW, LEGEND = 2.6, 0.3  # height of a row of figures, of what is above [inch]
+LETTERS_OF_LEGEND = 52  # in a line of a panel's legend
 LEAST_LIMIT = 1e-30  # a share of a smaller one tells nothing
 
 _KIND = either("line", "points", "bars")
@@ -153,8 +155,12 @@ def _limit_height(result: Mapping[str, Any]) -> float:
 
 
 def _judged(result: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    return [limit for limit in result["limits"]
-            if (limit.get("compared") or {}).get("value") is not None]
+    """The limits; one that no run shows is undecided, and not left out."""
+    return list(result["limits"])
+
+
+def _has_value(limit: Mapping[str, Any]) -> bool:
+    return (limit.get("compared") or {}).get("value") is not None
 
 
 def _share(limit: Mapping[str, Any], value: float) -> float:
@@ -176,6 +182,11 @@ def _limits(axes: Axes, limits: Sequence[Mapping[str, Any]]) -> None:
     """Bars from nothing to the share of the limit that is used."""
     least = 1e-3
     for k, limit in enumerate(limits):
+        if not _has_value(limit):
+            axes.barh(k, 1 - least, left=least, height=0.6, color="none",
+                      edgecolor=style.GREY, hatch="///", lw=0)
+            _result_words(axes, "undecided: no run shows it", least, k)
+            continue
         compared = limit["compared"]
         if limit.get("relative_to"):  # the limit is that of another rate
             allowed = compared["value"] + (limit.get("margin") or 0)
@@ -190,9 +201,7 @@ def _limits(axes: Axes, limits: Sequence[Mapping[str, Any]]) -> None:
         color = style.RESULTS.get(limit["result"], style.BLACK)
         axes.barh(k, used - least, left=least, height=0.6, color=color)
         axes.plot(ends, [k, k], color=style.BLACK, lw=1.2)
-        axes.annotate(f" {limit['result']}", (max(used, ends[1]), k),
-                      xytext=(4, 0), textcoords="offset points", va="center",
-                      fontsize=9, color=style.BLACK)
+        _result_words(axes, str(limit["result"]), max(used, ends[1]), k)
     axes.axvline(1, color=style.BLACK, lw=1.4)
     axes.set_yticks(range(len(limits)), style.labels(
         [one["metric"] for one in limits], LONGEST_METRIC))
@@ -203,6 +212,13 @@ def _limits(axes: Axes, limits: Sequence[Mapping[str, Any]]) -> None:
              xlabel="share of the limit (line: the limit; bars end at the "
                     "value, with its 95 % interval)")
     axes.set_title("Limits")
+
+
+def _result_words(axes: Axes, words: str, x: float, y: float) -> None:
+    """Beside a bar; the line of the limit does not run through them."""
+    axes.annotate(words, (x, y), xytext=(6, 0), textcoords="offset points",
+                  va="center", fontsize=9, color=style.BLACK,
+                  bbox={"fc": "white", "ec": "none", "pad": 1})
 
 
 def _words(result: Mapping[str, Any]) -> str:
@@ -228,21 +244,45 @@ def _small(axes: Axes, figure: Mapping[str, Any]) -> None:
     axes.xaxis.label.set_fontsize(9)
     axes.yaxis.label.set_fontsize(9)
     axes.tick_params(labelsize=8)
+    handles = _handles(axes, figure)
+    if handles:
+        _legend_within(axes, handles)
+
+
+def _handles(axes: Axes, figure: Mapping[str, Any]) -> list[Any]:
+    """What the legend above all panels does not say: where colours tell before
+    from after, dashes tell the runs; both have the same dash."""
+    drawn, names = axes.get_legend_handles_labels()
+    dashes = {style.spoken(series["name"]): look["linestyle"] for series, look
+              in zip(figure["series"], _styles(figure))}
     roles = {series.get("role") for series in figure["series"]}
-    if not {"before", "after"} <= roles and 1 < len(figure["series"]) < 5:
-        _legend_within(axes)
+    if not {"before", "after"} <= roles:
+        return list(drawn) if len(drawn) > 1 else []
+    found = []
+    for handle, name in zip(drawn, names):
+        of_both = re.match("after, (.*)", name)
+        if of_both and isinstance(handle, Line2D):
+            found.append(Line2D([], [], color=style.WORDS, lw=1.5,
+                                ls=dashes[name], label=of_both[1]))
+        elif not of_both and not re.match("before|after$", name):
+            found.append(handle)
+    return found
 
 
-def _legend_within(axes: Axes) -> None:
+def _legend_within(axes: Axes, handles: Sequence[Any]) -> None:
     """A legend above what is drawn, for which the axis becomes longer."""
-    texts = axes.get_legend_handles_labels()[1]
-    columns = len(texts) if sum(map(len, texts)) < 40 else 1
+    texts = [str(handle.get_label()) for handle in handles]
+    longest = max(map(len, texts))
+    columns = min(len(texts), max(1, LETTERS_OF_LEGEND // (longest + 6)))
+    low, high = axes.get_ylim()
+    lines = -(-len(texts) // columns)
+    share = 0.06 + 0.09 * lines
     if axes.get_yscale() == "linear":
-        low, high = axes.get_ylim()
-        lines = -(-len(texts) // columns)
-        axes.set_ylim(low, high + (0.06 + 0.1 * lines) * (high - low))
-    axes.legend(loc="upper right", ncols=columns, fontsize=7,
-                handlelength=1.6)
+        axes.set_ylim(low, high + share * (high - low))
+    elif low > 0:
+        axes.set_ylim(low, high * (high / low) ** share)
+    axes.legend(handles=handles, loc="upper right", ncols=columns, fontsize=7,
+                handlelength=2.4, columnspacing=1.0, labelspacing=0.3)
 
 
 def draw(figure: Figure, result: Mapping[str, Any]) -> None:
@@ -257,6 +297,8 @@ def draw(figure: Figure, result: Mapping[str, Any]) -> None:
     # Each part has a layout of its own.
     below = list(figure.subfigures(len(parts), 1, squeeze=False,
                                    height_ratios=parts)[:, 0])
+    for part in below:
+        part.set_facecolor("none")  # else it hides the end of the title's words
     if limits:
         _limits(below.pop(0).subplots(), limits)
     if not rows:
