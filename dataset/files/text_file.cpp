@@ -46,11 +46,12 @@ std::string read_json_text(const std::filesystem::path& path,
   std::string text;
   read_in_pieces(path, [&](std::string_view piece) {
     text += piece;
-    if (text.size() > kLargestJson)
-      throw std::invalid_argument(
-          fmt::format("{}: more than {} bytes; expected {}, which has at most "
-                      "that",
-                      path.string(), kLargestJson, kind));
+    if (text.size() <= kLargestJson) return;
+    std::error_code unknown;
+    const std::uintmax_t size = std::filesystem::file_size(path, unknown);
+    throw std::invalid_argument(fmt::format(
+        "{}: {} bytes; expected {}, which has at most {}", path.string(),
+        unknown ? text.size() : size, kind, kLargestJson));
   });
   return text;
 }

@@ -163,15 +163,16 @@ class Mended(ProgramTest):
             words = [READ_SHARDS, ROOT / "tests/program", place, SHARD]
         given = self.dir / f"{kind}_{numbers[0]}.txt"
         given.write_text("\n".join(names))
-        with (given.open() as lines,
+        said_file = given.with_suffix(".err")
+        with (given.open() as lines, said_file.open("w") as errors,
               subprocess.Popen([*PATIENT, "/usr/bin/python3", "-c",
                                 *map(str, words)], cwd=self.dir, text=True,
                                stdin=lines, stdout=subprocess.PIPE,
-                               stderr=subprocess.DEVNULL,
+                               stderr=errors,
                                env=self.environment) as process):
             read = process.stdout.read().split()
-            seconds, memory = self.ends_well(read[-1], process)
-        self.assertEqual(process.returncode, 0, read[-1])
+            seconds, memory = self.ends_well(read[-1:], process)
+        self.assertEqual(process.returncode, 0, said_file.read_text()[-2000:])
         self.assertEqual(read, names)
         for name in names:
             (self.dir / name).unlink()
