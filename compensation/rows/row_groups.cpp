@@ -2,6 +2,7 @@
 #include "compensation/rows/row_groups.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <vector>
 
@@ -120,6 +121,16 @@ RowGroups coarsest_groups(const TrainingRows& rows, int least) {
     if (RowGroups groups = group_rows(rows, by); groups.count >= least)
       return groups;
   return group_rows(rows, Grouping::kSegment);
+}
+
+ArrayXi leg_directions(const TrainingRows& rows) {
+  ArrayXi direction = ArrayXi::Zero(rows.size());
+  for (const auto& [begin, end] : stretches_of(rows.leg)) {
+    const double change = rows.temperature(end - 1) - rows.temperature(begin);
+    if (std::abs(change) >= kLegReversal)
+      direction.segment(begin, end - begin).setConstant(change > 0.0 ? 1 : -1);
+  }
+  return direction;
 }
 
 bool others_cover(const TrainingRows& rows, const RowGroups& groups) {

@@ -33,6 +33,10 @@ RowGroups group_rows(const TrainingRows& rows, Grouping by);
 /// else by leg, else by segment.
 RowGroups coarsest_groups(const TrainingRows& rows, int least);
 
+/// Returns which way the temperature went over the leg of each row: 1 up, -1
+/// down, 0 where it did not move by kLegReversal.
+Eigen::ArrayXi leg_directions(const TrainingRows& rows);
+
 /// Largest share of the temperatures that may be in one group alone.
 constexpr double kLargestAlone = 0.25;  // [-]
 

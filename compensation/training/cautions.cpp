@@ -124,19 +124,6 @@ std::string ageing_caution(const FittedCase& fitted) {
          "or validate on runs of a later age";
 }
 
-// Which way the temperature went over the leg of each row: +1, -1, or 0 where
-// it did not move by kLegReversal.
-std::vector<int> directions(const TrainingRows& rows) {
-  std::vector<int> direction(static_cast<std::size_t>(rows.size()), 0);
-  for (const auto& [begin, end] : stretches_of(rows.leg)) {
-    const double change = rows.temperature(end - 1) - rows.temperature(begin);
-    if (std::abs(change) >= kLegReversal)
-      std::fill(direction.begin() + begin, direction.begin() + end,
-                change > 0.0 ? 1 : -1);
-  }
-  return direction;
-}
-
 struct Cell {
   double sum = 0.0, squares = 0.0, count = 0.0;
 
@@ -235,9 +222,9 @@ double temperature_resolution(const Recording& recording) {
 std::optional<Hysteresis> hysteresis(const TrainingRows& rows,
                                      const ArrayXd& residual) {
   std::map<double, Cell> falling, rising;
-  const std::vector<int> direction = directions(rows);
+  const Eigen::ArrayXi direction = leg_directions(rows);
   for (Index k = 0; k < rows.size(); ++k) {
-    const int way = direction[static_cast<std::size_t>(k)];
+    const int way = direction(k);
     if (way == 0) continue;
     Cell& cell =
         (way > 0 ? rising

@@ -106,6 +106,13 @@ SigmaValidity validity_of(const TrainingRows& rows, const TrainingRows& unseen,
   return validity;
 }
 
+// Of a device whose population has shown both ways of the temperature.
+bool knows_hysteresis(const FitSpec& kind) {
+  const auto* adapted = std::get_if<AdaptedSpec>(&kind);
+  return adapted != nullptr && adapted->population.sigma &&
+         adapted->population.sigma->hysteresis;
+}
+
 double rms_about(double value, const ArrayXd& bias) {
   return std::sqrt((bias - value).square().mean());
 }
@@ -321,7 +328,11 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
   } else {
     c.sigma_not_known = "the curve is averaged with a constant";
   }
-  if (c.sigma) c.sigma->validity = validity_of(rows, unseen, facts);
+  if (c.sigma) {
+    c.sigma->validity = validity_of(rows, unseen, facts);
+    if (knows_hysteresis(selected.candidate.kind))
+      c.sigma->validity.only_way.reset();
+  }
   if (!c.sigma_not_known.empty())
     result.sigma_remarks.push_back("no sigma: " + c.sigma_not_known);
   if (groups) p.cross_validated = summary_of(*groups, selected);

@@ -199,6 +199,16 @@ class OfAPopulation(ProgramTest):
         # Known from two soaks, a device is surer than the population.
         self.assertLess(np.mean(adapted["sigma_deg_per_s"]),
                         np.mean(sigma["sigma_deg_per_s"]))
+        # Of a set it is judged over all test devices, as of other runs.
+        self.beamgyro("validate", "population.json", "set", "--run", "sweep",
+                      "--json", "found.json")
+        found = self.json("found.json")["sigma"]
+        self.assertEqual(found["soaks"]["clusters"],
+                         np.count_nonzero(parts == 2))
+        self.assertEqual([c["level"] for c in found["soaks"]["coverage"]],
+                         [0.5, 0.9, 0.95])
+        self.assertAlmostEqual(sum(found["soaks"]["pit"]["histogram"]), 1)
+        self.assertGreater(found["bias_filter"]["nis"]["value"], 0)
 
 
 class OfAUnitThatAges(ProgramTest):

@@ -341,6 +341,47 @@ TEST(AdaptationSigma, IsWideWhereDevicesDifferMoreThanThePopulation) {
   EXPECT_GT(learned->factor, 3.0);
 }
 
+// Up and down; the bias is `hysteresis` times a normal number more on the way
+// up.
+TrainingRows both_ways(int devices, double hysteresis, double noise) {
+  std::vector<Leg> legs;
+  for (int d = 0; d < devices; ++d) {
+    legs.push_back({d, d, -40.0, 50.0, 91});
+    legs.push_back({d, d, 50.0, -40.0, 91});
+  }
+  const auto c = white(2 * devices, 21), offset = white(2 * devices, 22);
+  return rows_of(legs, [&](double T, int row) {
+    const auto d = static_cast<std::size_t>(row / 182);
+    const auto leg = static_cast<std::size_t>(row / 91);
+    return c[d] + 2e-4 * T * T + noise * offset[leg] +
+           (leg % 2 == 0 ? hysteresis * c[d + c.size() / 2] : 0.0);
+  });
+}
+
+// The turn-on offset of each way is taken off.
+TEST(AdaptationSigma, TellsUpFromDown) {
+  const auto found = [](double a, double noise) {
+    return hysteresis_over_devices(both_ways(400, a, noise), 5.0, noise);
+  };
+  EXPECT_NEAR(found(0.3, 0.0).value(), 0.3, 0.03);  // of 400 numbers: 3.5 %
+  EXPECT_NEAR(found(0.3, 0.1).value(), 0.3, 0.04);
+  EXPECT_NEAR(found(0.0, 0.1).value(), 0.0, 0.05);  // (0.02 7 %)^(1/2)
+  EXPECT_EQ(
+      hysteresis_over_devices(parabolas(3, 3, every_five_kelvins()), 5.0, 0.0),
+      std::nullopt);
+}
+
+TEST(AdaptedSigma, CountsTheOtherWayHalfOfTheTime) {
+  Population population = fit_population(
+      kTemperatureInput, parabolas(20, 6, every_five_kelvins()), 5.0);
+  population.sigma = AdaptationSigma{.factor = 0.5, .hysteresis = 0.2};
+  const ArrayXd deviation = ArrayXd::Constant(population.grid(), 0.4);
+  const BiasSigma sigma = adapted_sigma(population, deviation, {0.03, 0.01});
+  EXPECT_NEAR(sigma.at(10.0, 0.0, 0.0),
+              std::sqrt(0.2 * 0.2 + 2.0 * 0.03 * 0.03 + 0.5 * 0.2 * 0.2),
+              1e-12);
+}
+
 TEST(AdaptedSigma, AddsTheTurnOnOfTwoRunsOutsideTheFactor) {
   Population population = fit_population(
       kTemperatureInput, parabolas(20, 6, every_five_kelvins()), 5.0);
