@@ -28,6 +28,7 @@ from beamgyro._dataset import open_recording, save_recording
 from beamgyro._device import Device
 from beamgyro._estimator import Estimator, RunSplit
 from beamgyro._export import export
+from beamgyro._many import run_many
 from beamgyro._results import (AllanResult, CurveFiguresResult, PlanResult,
                                SensitivityResult)
 from beamgyro._scenario import Scenario, run, run_to_file
@@ -43,7 +44,7 @@ __all__ = [
     "RunSplit", "Scenario", "SensitivityResult", "Set", "ValidationResult", "__version__", "allan",
     "area_metric", "characterise", "compensate", "curve_figures", "export",
     "features", "generate", "half_split", "open_recording", "open_set", "plan",
-    "run", "run_to_file", "save_recording", "sensitivity", "train",
+    "run", "run_many", "run_to_file", "save_recording", "sensitivity", "train",
     "training_rows", "validate",
 ]
 
