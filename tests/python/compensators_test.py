@@ -81,6 +81,17 @@ def test_an_estimator_does_what_the_cubic_does(sweeps):
     assert abs(difference).max() < 0.02 * drift
 
 
+def test_it_keeps_the_name_that_it_is_saved_under(sweeps, tmp_path):
+    trained = bg.train(CUBIC, sweeps[0])
+    text = trained.text
+    trained.save(tmp_path / "my_gyro.json")
+    assert trained.name == "my_gyro.json" and trained.text == text
+    assert trained == bg.Compensator(tmp_path / "my_gyro.json")
+    assert "my_gyro.json" in str(bg.validate(trained, sweeps[1]))
+    bg.export(trained, "c", tmp_path / "firmware")
+    assert (tmp_path / "firmware/my_gyro.c").exists()
+
+
 def test_rows_are_of_locked_samples_of_one_power_on():
     run = bg.run(SCENARIOS / "warm_up.toml", set={
         "fidelity": "envelope", "duration_s": 130, "output_rate_Hz": 100,
