@@ -23,8 +23,9 @@ def run(folder, *arguments, **variables):
 
 def test_drift_curve(tmp_path):
     script = EXAMPLES / "drift_curve.py"
-    lines = run(tmp_path, script, SCENARIOS / "devices/nominal.toml"
-                ).splitlines()
+    lines = run(tmp_path, script, SCENARIOS / "devices/nominal.toml",
+                "curve.png").splitlines()
+    assert (tmp_path / "curve.png").stat().st_size > 10000
     assert len(lines) == 12
     assert lines[1].split()[0] == "-40"
     code = [line for line in script.read_text().splitlines()
