@@ -26,7 +26,9 @@ from beamgyro._curves import (HalfSplit, area_metric, characterise,
                               curve_figures, half_split)
 from beamgyro._dataset import open_recording, save_recording
 from beamgyro._device import Device
+from beamgyro._estimator import Estimator, RunSplit
 from beamgyro._export import export
+from beamgyro._many import run_many
 from beamgyro._results import (AllanResult, CurveFiguresResult, PlanResult,
                                SensitivityResult)
 from beamgyro._scenario import Scenario, run, run_to_file
@@ -38,11 +40,11 @@ from beamgyro._warnings import BeamgyroWarning
 
 __all__ = [
     "AllanResult", "BeamgyroWarning", "Campaign", "Compensator",
-    "CurveFiguresResult", "Device", "HalfSplit", "PlanResult", "Scenario",
-    "SensitivityResult", "Set", "ValidationResult", "__version__", "allan",
+    "CurveFiguresResult", "Device", "Estimator", "HalfSplit", "PlanResult",
+    "RunSplit", "Scenario", "SensitivityResult", "Set", "ValidationResult", "__version__", "allan",
     "area_metric", "characterise", "compensate", "curve_figures", "export",
     "features", "generate", "half_split", "open_recording", "open_set", "plan",
-    "run", "run_to_file", "save_recording", "sensitivity", "train",
+    "run", "run_many", "run_to_file", "save_recording", "sensitivity", "train",
     "training_rows", "validate",
 ]
 

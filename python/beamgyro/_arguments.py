@@ -13,6 +13,7 @@ from typing import Any, Optional
 
 import numpy as np
 
+from beamgyro._warnings import warn
 from beamgyro._words import shown, wrong
 
 Array = np.ndarray[Any, Any]
@@ -175,6 +176,10 @@ def seconds(values: Any, name: str) -> Array:
 def status(values: Any) -> Array:
     """Return the bits of the variable `status`."""
     found = numbers(values, "status")
+    if np.asarray(values).dtype.kind == "f":
+        warn(["status: holds floats: a mean of its bits is another state; "
+              "expected integers, such as status.isel(time=slice(None, None, "
+              "n)) has beside means of n samples"])
     refused = ~((found >= 0) & (found <= 255) & (found == np.floor(found)))
     if refused.any():
         at = int(np.argmax(refused))
@@ -217,6 +222,23 @@ def unit_of(data: Any, unit: Optional[str]) -> str:
         raise ValueError(f"unit {unit!r}: the array states {stated!r}; "
                          "expected that one, or no unit")
     return str(given or stated or "deg/s")
+
+
+# Factor and offset to degC, as docs/reference/recording.md has them.
+_TEMPERATURES = {"degC": (1.0, 0.0), "Celsius": (1.0, 0.0),
+                 "K": (1.0, -273.15), "Kelvin": (1.0, -273.15),
+                 "degF": (1 / 1.8, -32 / 1.8)}
+
+
+def in_degC(values: Array, source: Any, name: str) -> Array:
+    """Return temperatures in degC; an array of xarray may state their unit."""
+    unit = getattr(source, "attrs", {}).get("units", "degC")
+    if unit not in _TEMPERATURES:
+        raise ValueError(f"{name}: the array states the unit {unit!r}; "
+                         f"expected {', '.join(_TEMPERATURES)}, or none")
+    factor, offset = _TEMPERATURES[unit]
+    return values if (factor, offset) == (1.0, 0.0) \
+        else factor * values + offset
 
 
 def not_empty(values: Sized, name: str) -> None:

@@ -122,11 +122,18 @@ class Compensator(Wrapper):
     def save(self, path: Path) -> None:
         """Write the file of a trained compensator.
 
+        From then on it has the name of the file, as if it had been read from
+        there: reports, pictures and exported sources call it so.
+
         Raises:
             ValueError: it was not trained, or the name cannot be written.
             RuntimeError: writing failed.
         """
-        self._trained("file").write(_checks.path(path, "path"))
+        core = self._trained("file")
+        file = _checks.path(path, "path")
+        core.write(file)
+        self._native = _core.Compensator.parse(core.text,
+                                               os.path.basename(file))
 
     def _identity(self) -> Any:
         core = self._native

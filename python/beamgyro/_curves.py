@@ -39,7 +39,8 @@ def _temperatures(given: Union[slice, float, Iterable[float]]) -> list[float]:
     one_or_more: Any = list(given) if isinstance(given, Iterator) else given
     if np.ndim(one_or_more) == 0:
         one_or_more = np.atleast_1d(one_or_more)
-    found = _arguments.numbers(one_or_more, name)
+    found = _arguments.in_degC(_arguments.numbers(one_or_more, name), given,
+                               name)
     _arguments.not_empty(found, name)
     return list(found.tolist())
 

@@ -10,6 +10,7 @@ _WHAT_FOR = {
     "xarray": "datasets; without it, ask for output=\"arrays\"",
     "matplotlib": "plots",
     "h5py": "sets",
+    "pandas": "data frames",
 }
 
 

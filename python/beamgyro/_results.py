@@ -10,7 +10,10 @@ from typing import TYPE_CHECKING, Any, Optional
 
 from beamgyro._scenario import Scenario
 
+from beamgyro import _lazy
+
 if TYPE_CHECKING:
+    import pandas as pd  # type: ignore[import]
     import xarray as xr
 
 
@@ -79,7 +82,6 @@ class AllanResult(Report):
 
     def to_dataset(self, kind: str = "oadev") -> xr.Dataset:
         """Return a deviation over the averaging time ``tau`` [s]."""
-        from beamgyro import _lazy
         points = (self.data.get(kind) if isinstance(kind, str)
                   and kind.endswith("dev") else None)
         if points is None:
@@ -95,6 +97,12 @@ class AllanResult(Report):
             {name: ("tau", [one[name] for one in points]) for name in names},
             {"tau": ("tau", [one["tau_s"] for one in points],
                      {"units": "s"})}, {"kind": kind})
+        return made
+
+
+    def to_dataframe(self, kind: str = "oadev") -> pd.DataFrame:
+        """Return a deviation as a table of pandas, indexed by ``tau`` [s]."""
+        made: pd.DataFrame = self.to_dataset(kind).to_dataframe()
         return made
 
 
@@ -129,6 +137,12 @@ class CurveFiguresResult(Report):
                 for name, one in self.data["figures"].items()}
 
 
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the figures as a table of pandas, a row for each unit."""
+        made: pd.DataFrame = _lazy.module("pandas").DataFrame(self.figures)
+        return made
+
+
 class SensitivityResult(Report):
     """Which tolerance causes the spread of which figure."""
 
@@ -137,6 +151,14 @@ class SensitivityResult(Report):
         """The indices of each figure of merit, largest first."""
         return {name: list(one["indices"])
                 for name, one in self.data["figures"].items()}
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the indices as a table of pandas, a row for each figure of
+        merit and key."""
+        made: pd.DataFrame = _lazy.module("pandas").DataFrame(
+            [{"figure": name, **one} for name, indices in self.figures.items()
+             for one in indices])
+        return made
 
     def _repr_html_(self) -> str:
         parts = []

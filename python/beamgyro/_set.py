@@ -4,23 +4,25 @@
 from __future__ import annotations
 
 import os
+import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
-from beamgyro import _arguments, _checks, _core, _lazy
+from beamgyro import _arguments, _checks, _core, _lazy, _toml
 from beamgyro._dataset import Path, dataset_of
-from beamgyro._device import Device
+from beamgyro._device import Device, Keys
 from beamgyro._native import Native, Wrapper
 from beamgyro._progress import ProgressArgument, watched
+from beamgyro._scenario import Scenario
 from beamgyro._warnings import warn
 
 if TYPE_CHECKING:
     import xarray as xr
 
-CampaignLike = Union["Campaign", Path]
+CampaignLike = Union["Campaign", Path, Keys]
 
 
 class Campaign(Wrapper):
@@ -30,7 +32,9 @@ class Campaign(Wrapper):
     pickles as the texts of these.
 
     Args:
-        source: a campaign file.
+        source: a campaign file, or its contents as a nested mapping. There
+            files are named from the current directory; ``device`` and the
+            ``scenario`` of a run may also be mappings or objects.
         devices: replaces the number of devices in the file.
 
     Raises:
@@ -48,9 +52,12 @@ class Campaign(Wrapper):
         if isinstance(source, Campaign):
             self._native = (source._native if count is None else
                             _core.Campaign.parse(source._native.files, count))
+        elif _checks.is_table(source):
+            self._native = _campaign_of_keys(source, count)
         else:
             self._native = _core.Campaign.read(
-                _checks.file(source, "campaign", "a campaign"), count)
+                _checks.file(source, "campaign", "a campaign",
+                             _checks.MAPPING), count)
 
     name = Native(str, "The name in the file.")
     text = Native(str, "The text of the campaign file.")
@@ -76,6 +83,62 @@ class Campaign(Wrapper):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Campaign._parsed, (self._native.files, self.devices)
+
+
+def _campaign_of_keys(keys: Keys, count: Optional[int]) -> _core.Campaign:
+    """The campaign of a mapping, whose parts are written as files to be read
+    as those of any campaign; what it keeps of them are texts."""
+    with tempfile.TemporaryDirectory() as folder:
+        table = dict(keys)
+        if "device" in table:
+            table["device"] = _part(table["device"], folder, "device")
+        if not _is_sequence_of_tables(table.get("run", [])):
+            raise ValueError("campaign: run: expected a sequence of mappings "
+                             "with name and scenario")
+        table["run"] = [
+            {**run, "scenario": _part(run["scenario"], folder,
+                                      f"scenario_{number}")}
+            if "scenario" in run else dict(run)
+            for number, run in enumerate(table.get("run", []))]
+        path = FilePath(folder) / "campaign.toml"
+        path.write_text(_toml.text(table), encoding="utf-8")
+        try:
+            files = _core.Campaign.read(path, count).files
+        except ValueError as error:
+            raise ValueError(str(error).replace(f"{folder}/", "")) from None
+    return _core.Campaign.parse(
+        [(_without(place, folder), text) for place, text in files], count)
+
+
+def _is_sequence_of_tables(value: Any) -> bool:
+    return isinstance(value, (list, tuple)) and all(
+        isinstance(one, Mapping) for one in value)
+
+
+def _part(source: Any, folder: str, name: str) -> str:
+    """The path of a file, or of one that is written of keys or an object."""
+    if isinstance(source, (str, os.PathLike)):
+        return os.path.abspath(os.fspath(source))
+    path = FilePath(folder) / f"{name}.toml"
+    if isinstance(source, (Device, Scenario)):
+        if source.overrides:
+            raise ValueError(f"campaign: {name}: {source!r}: has replaced keys;"
+                             " expected a mapping with them, or the file")
+        path.write_text(source.text, encoding="utf-8")
+    elif _checks.is_table(source):
+        table = {key: _part(part, folder, f"{name}_device")
+                 if key == "device" else part for key, part in source.items()}
+        path.write_text(_toml.text(table), encoding="utf-8")
+    else:
+        raise _checks.wrong(source, f"campaign: {name}",
+                            "a file, a mapping or an object of beamgyro")
+    return path.name  # as seen from the file that names it
+
+
+def _without(place: Any, folder: str) -> FilePath:
+    """A place in the folder, as seen from there; another one as it is."""
+    path = FilePath(os.fspath(place))
+    return path.relative_to(folder) if path.is_relative_to(folder) else path
 
 
 class Set(Wrapper, Mapping[tuple[str, int], "xr.Dataset"]):

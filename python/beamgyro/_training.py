@@ -133,6 +133,10 @@ def train(model: Union[Path, Mapping[str, Any]],
     return Compensator._of(compensator)
 
 
+_UNPOWERED = 1  # bits of the status, as docs/reference/recording.md has them
+_NO_ROW = 1 | 2 | 4  # without power, saturated, not locked
+
+
 def features(recording: Union[xr.Dataset, Path],
              inputs: Sequence[str] = _adapters.DEFAULT_INPUTS
              ) -> np.ndarray[Any, Any]:
@@ -154,14 +158,16 @@ def training_rows(runs: Union[Runs, Set],
     """Return features and labels for an estimator or a network.
 
     The label of a sample is its bias: the measured rate less the true rate,
-    which a bench knows [degree/s]. Samples without power or beyond the full
-    scale are left out.
+    which a bench knows [degree/s]. Samples without power, without lock or
+    beyond the full scale are left out, as `train` does.
 
     Args:
         runs: recordings as of `train`, or a set.
         inputs: features, as model files name them.
         part: of a set: "train", "validation" or "test"; "train" without.
-        every_s: averages over so many seconds; 0: every sample.
+        every_s: averages over blocks of so many seconds, which are counted
+            from each power-on; a block that is less than half as full as the
+            fullest is left out, as `train` does. 0: every sample.
 
     Returns:
         The features (rows, inputs) and the labels (rows).
@@ -179,8 +185,8 @@ def training_rows(runs: Union[Runs, Set],
         raise ValueError("no recordings to make rows of; expected at least "
                          "one")
     if not any(labels.size for _, labels in found):
-        raise ValueError("runs: have no sample with power and within the full "
-                         "scale; expected at least one")
+        raise ValueError("runs: have no sample that is powered, locked and not "
+                         "saturated; expected at least one")
     return (np.concatenate([rows for rows, _ in found]),
             np.concatenate([labels for _, labels in found]))
 
@@ -193,12 +199,20 @@ def _rows_of(recording: _core.Recording, inputs: list[str], every_s: float
                          "from a simulation or a bench")
     rows = _core.features(inputs, recording)
     labels = arrays["rate"] - arrays["true_rate"]
-    good = (arrays["status"] & 3) == 0
-    rows, labels, time = rows[good], labels[good], arrays["time"][good]
-    if every_s == 0 or not time.size:
-        return rows, labels
-    block = np.floor(time / every_s)
-    starts = np.flatnonzero(np.diff(block, prepend=-np.inf))
-    counts = np.diff(np.append(starts, time.size))
-    return (np.add.reduceat(rows, starts, axis=0) / counts[:, None],
-            np.add.reduceat(labels, starts) / counts)
+    status, time = arrays["status"], arrays["time"]
+    good = (status & _NO_ROW) == 0
+    if every_s == 0 or not good.any():
+        return rows[good], labels[good]
+    # As row_blocks_of() of the compiled part does.
+    powered = (status & _UNPOWERED) == 0
+    begins = powered & ~np.concatenate([[False], powered[:-1]])
+    cycle = np.cumsum(begins)[good] - 1
+    block = np.floor((time[good] - time[begins][cycle]) / every_s)
+    changes = (np.diff(cycle, prepend=-1) != 0) | (
+        np.diff(block, prepend=-1.0) != 0)
+    starts = np.flatnonzero(changes)
+    counts = np.diff(np.append(starts, block.size))
+    full = 2 * counts >= counts.max()
+    return ((np.add.reduceat(rows[good], starts, axis=0)
+             / counts[:, None])[full],
+            (np.add.reduceat(labels[good], starts) / counts)[full])

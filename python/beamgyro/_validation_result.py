@@ -4,11 +4,35 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Optional
+from typing import TYPE_CHECKING, Any, Optional
 
+from beamgyro import _lazy
 from beamgyro._compensation import Compensator
 from beamgyro._results import Report
 from beamgyro._validation_html import page
+
+if TYPE_CHECKING:
+    import pandas as pd  # type: ignore[import]
+
+
+def _ends(estimate: Any, prefix: str) -> dict[str, Any]:
+    """Return the value of a figure and the ends of its interval."""
+    known = estimate or {}
+    low, high = known.get("interval") or (None, None)
+    return {prefix: known.get("value"), f"{prefix}_low": low,
+            f"{prefix}_high": high}
+
+
+def _metric_row(one: dict[str, Any]) -> dict[str, Any]:
+    return {"name": one["name"], "unit": one["unit"],
+            **_ends(one.get("before"), "before"),
+            **_ends(one.get("after"), "after"), "result": one.get("result")}
+
+
+def _limit_row(one: dict[str, Any]) -> dict[str, Any]:
+    return {"metric": one["metric"], "min": one["min"], "max": one["max"],
+            **_ends(one.get("compared"), "value"), "margin": one.get("margin"),
+            "result": one.get("result"), "source": one.get("source")}
 
 
 class ValidationResult(Report):
@@ -48,6 +72,27 @@ class ValidationResult(Report):
     def trained(self) -> Optional[Compensator]:
         """The compensator that was trained and judged, of a model; or None."""
         return self._trained
+
+    def to_dataframe(self, table: str = "metrics") -> pd.DataFrame:
+        """Return a table of pandas, indexed by name.
+
+        Args:
+            table: "metrics", with the ends of the intervals in columns of
+                their own, "limits" or "checks".
+
+        Raises:
+            ValueError: there is no such table.
+        """
+        rows: dict[str, Any] = {
+            "metrics": [_metric_row(one) for one in self._metrics()],
+            "limits": [_limit_row(one) for one in self.data["limits"]],
+            "checks": self.data["checks"]}
+        if table not in rows:
+            raise ValueError(f"table {table!r}: expected one of "
+                             f"{', '.join(rows)}")
+        made: pd.DataFrame = _lazy.module("pandas").DataFrame(rows[table])
+        return made if made.empty else made.set_index(
+            "metric" if table == "limits" else "name")
 
     def to_html(self) -> str:
         """Return the page that ``--report`` writes."""

@@ -87,6 +87,9 @@ class Site(unittest.TestCase):
         for name in public:
             if name != "__version__":
                 self.assertIn(f'id="beamgyro.{name}"', page)
+        for name in ("_accessor.RecordingAccessor.plot", "plots.plot",
+                     "plots.plot_allan"):
+            self.assertIn(f'id="beamgyro.{name}"', page)
 
     def test_the_reference_of_cpp_has_every_public_header(self):
         headers = sorted((ROOT / "include/beamgyro").glob("*.h"))

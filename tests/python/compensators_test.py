@@ -81,6 +81,43 @@ def test_an_estimator_does_what_the_cubic_does(sweeps):
     assert abs(difference).max() < 0.02 * drift
 
 
+def test_it_keeps_the_name_that_it_is_saved_under(sweeps, tmp_path):
+    trained = bg.train(CUBIC, sweeps[0])
+    text = trained.text
+    trained.save(tmp_path / "my_gyro.json")
+    assert trained.name == "my_gyro.json" and trained.text == text
+    assert trained == bg.Compensator(tmp_path / "my_gyro.json")
+    assert "my_gyro.json" in str(bg.validate(trained, sweeps[1]))
+    bg.export(trained, "c", tmp_path / "firmware")
+    assert (tmp_path / "firmware/my_gyro.c").exists()
+
+
+def test_rows_are_of_locked_samples_of_one_power_on():
+    run = bg.run(SCENARIOS / "warm_up.toml", set={
+        "fidelity": "envelope", "duration_s": 130, "output_rate_Hz": 100,
+        "power": {"on_s": [0.0, 71.0], "off_s": [40.0]}})
+    status = run.status.values
+    assert {0, 1, 4} <= set(status.tolist())  # also unpowered and unlocked
+    rows, labels = bg.training_rows(run)
+    good = status == 0
+    np.testing.assert_array_equal(
+        labels, (run.rate - run.true_rate).values[good])
+    np.testing.assert_array_equal(rows[:, 0], run.temperature.values[good])
+    assert abs(labels).max() < 5  # it is 74 deg/s while the loops lock
+    # Blocks of 20 s are counted from each power-on: 2 of the first, and of the
+    # second 2 whole ones and one of 19 s, which is more than half full.
+    rows, labels = bg.training_rows(run, every_s=20)
+    assert len(labels) == 2 + 3
+    time = run.time.values
+    for number, (begin, end) in enumerate([
+            (0, 20), (20, 40), (71, 91), (91, 111), (111, 130)]):
+        inside = good & (time >= begin) & (time < end)
+        assert labels[number] == pytest.approx(
+            float((run.rate - run.true_rate).values[inside].mean()))
+    # Blocks of 30 s: the rest of 10 s of the first is less than half full.
+    assert len(bg.training_rows(run, every_s=30)[1]) == 1 + 2
+
+
 def test_an_estimator_is_given_the_features_that_it_was_fitted_to(sweeps):
     pytest.importorskip("sklearn")
     import pandas as pd
