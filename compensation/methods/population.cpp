@@ -11,6 +11,7 @@
 
 #include "compensation/methods/population_equations.h"
 #include "compensation/methods/population_own.h"
+#include "compensation/rows/row_groups.h"
 #include "linear_algebra/eigenvalues.h"
 #include "linear_algebra/least_squares.h"
 
@@ -134,24 +135,12 @@ void set_modes(Population& p, const MatrixXd& X) {
   p.coefficients = coefficients_of(scaled, vectors, variance.tail(kept));
 }
 
-constexpr double kLeastWay = 5.0;  // [K], of a leg that rises or falls
-
-// The rows of a device on legs that fall (`sign` -1) or rise (1).
-std::vector<Index> rows_of_way(const TrainingRows& rows,
-                               const std::vector<Index>& own, double sign) {
+// The rows of a device on legs that fall (`way` -1) or rise (1).
+std::vector<Index> rows_of_way(const Eigen::ArrayXi& ways,
+                               const std::vector<Index>& own, int way) {
   std::vector<Index> found;
-  for (std::size_t first = 0; first < own.size();) {
-    std::size_t last = first;
-    while (last + 1 < own.size() &&
-           rows.leg(own[last + 1]) == rows.leg(own[first]))
-      ++last;
-    if (sign * (rows.temperature(own[last]) - rows.temperature(own[first])) >=
-        kLeastWay)
-      found.insert(found.end(),
-                   own.begin() + static_cast<std::ptrdiff_t>(first),
-                   own.begin() + static_cast<std::ptrdiff_t>(last + 1));
-    first = last + 1;
-  }
+  for (const Index row : own)
+    if (ways(row) == way) found.push_back(row);
   return found;
 }
 
@@ -173,14 +162,15 @@ void set_hysteresis(Population& p, const TrainingRows& rows,
                     const RowsOfDevices& devices, double grid_K) {
   const Index kept = p.coefficients.rows();
   if (rows.leg.size() < rows.size()) return;  // not of recordings
+  const Eigen::ArrayXi ways = leg_directions(rows);
   MatrixXd half(kept, p.grid());
   for (Index k = 0; k < kept; ++k) {
     const std::vector<Index>& own = devices[static_cast<std::size_t>(
         k * static_cast<Index>(devices.size()) / kept)];
     const auto falling =
-        swept_bias(rows, rows_of_way(rows, own, -1.0), p.temperatures, grid_K);
+        swept_bias(rows, rows_of_way(ways, own, -1), p.temperatures, grid_K);
     const auto rising =
-        swept_bias(rows, rows_of_way(rows, own, 1.0), p.temperatures, grid_K);
+        swept_bias(rows, rows_of_way(ways, own, 1), p.temperatures, grid_K);
     if (!falling || !rising) return;
     half.row(k) = 0.5 * (*falling - *rising).matrix().transpose();
   }
@@ -223,6 +213,14 @@ Population fit_population(const std::vector<Input>& inputs,
   set_modes(population, deviations);
   set_hysteresis(population, rows, devices, grid_K);
   return population;
+}
+
+double hysteresis_rms(const Population& population) {
+  if (population.hysteresis.size() == 0) return 0.0;
+  const double noise = population.point_noise;
+  return std::sqrt(std::max(
+      4.0 * population.hysteresis.array().square().mean() - 2.0 * noise * noise,
+      0.0));
 }
 
 LeftOutDevice left_out_device(const Population& population) {

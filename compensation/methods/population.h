@@ -24,10 +24,7 @@ struct AdaptationSigma {
   std::optional<SigmaTerm> temperature_rate;  // likewise
   int devices = 0;
   double half_width = 0.0;  // as of SigmaCalibration
-  // [deg/s], rms over devices and temperatures of what the bias of rising
-  // temperatures is more than that of falling ones; nothing where no device
-  // shows both.
-  std::optional<double> hysteresis = {};
+};
 };
 
 /// What a device has of its own in a curve, such as spurious resonances at
@@ -84,6 +81,11 @@ struct Population {
 };
 
 constexpr Eigen::Index kMostCoefficients = 1000;
+
+/// Returns the rms over devices and temperatures by which the bias of falling
+/// and of rising temperatures differ [deg/s]. The variance of a point's noise
+/// in both is taken off. 0 where the devices were not swept both ways.
+double hysteresis_rms(const Population& population);
 
 /// How a device of a population, with the coefficients c among n, lies to the
 /// n - 1 others: they have the mean -c / (n - 1) and the covariance alpha I -
@@ -166,31 +168,24 @@ Population read_population(const JsonNode& node);
 ResidualRows own_curve_residuals(const TrainingRows& rows, double grid_K,
                                  std::vector<std::string>& remarks);
 
-/// Returns the hysteresis of AdaptationSigma: of each device of `rows` with
-/// both ways, the rows of falling temperature less a spline through those of
-/// rising temperature, whose knots are `grid_K` [K] apart. The variance of
-/// `noise` [deg/s] in both is taken off.
-std::optional<double> hysteresis_over_devices(const TrainingRows& rows,
-                                              double grid_K, double noise);
-
 /// Returns the calibration of devices adapted from `population`, on devices it
 /// was not learned from. Each is adapted from few soaks of its `soaks`, evenly
 /// spaced, and predicted at the others. The factor makes the mean square of
 /// what is missed there over k^2 deviation^2 + noise^2 one: a predicted soak
-/// has the noise of a point and, of devices that show both ways of the
-/// temperature, the quarter of hysteresis^2 by which each way is off their
-/// mean. It is at least 0.5. a_rate and a_on are those of
-/// `lagging`, own_curve_residuals(), beyond what soaks leave of the same
-/// curves. Without rows to predict, nothing.
+/// has the noise of a point and, of a population that was swept both ways, the
+/// quarter of hysteresis_rms()^2 by which each way is off their mean. It is at
+/// least 0.5. a_rate and a_on are those of `lagging`, own_curve_residuals(),
+/// beyond what soaks leave of the same curves. Without rows to predict,
+/// nothing.
 std::optional<AdaptationSigma> adaptation_sigma(
     const Population& population, const std::vector<Input>& inputs,
     const TrainingRows& soaks, const ResidualRows& lagging);
 
 /// Returns sigma over temperature of a device adapted with `deviation`, on the
-/// grid of the population: k^2 s^2 = k^2 deviation^2 + 2 noise^2 + hysteresis^2
-/// / 2. The turn-on offset and slow noise of `noise` are those of the run
-/// adapted to and, once more, of the run that is compensated, which goes the
-/// other way half of the time.
+/// grid of the population: k^2 s^2 = k^2 deviation^2 + 2 noise^2 +
+/// hysteresis_rms()^2 / 2. The turn-on offset and slow noise of `noise` are
+/// those of the run adapted to and, once more, of the run that is compensated,
+/// which goes the other way half of the time.
 BiasSigma adapted_sigma(const Population& population,
                         const Eigen::ArrayXd& deviation,
                         const PointNoise& noise);

@@ -17,32 +17,21 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Eigen::Index;
 
-constexpr const char* kHysteresis = "hysteresis_deg_per_s";
-
 Json adaptation_json(const AdaptationSigma& sigma) {
   Json json = {{"factor", finite_json(sigma.factor)},
                {"devices", sigma.devices},
                {"half_width", finite_json(sigma.half_width)}};
   put_sigma_terms(sigma.power_on, sigma.temperature_rate, json);
-  if (sigma.hysteresis) json[kHysteresis] = finite_json(*sigma.hysteresis);
   return json;
 }
 
 AdaptationSigma read_adaptation(const JsonNode& node) {
-  node.require_only({"factor", "devices", "half_width", "power_on",
-                     "temperature_rate", kHysteresis});
-  AdaptationSigma sigma{
-      read_positive(node.at("factor")), read_power_on_sigma(node),
-      read_temperature_rate_sigma(node),
-      static_cast<int>(node.at("devices").integer(1, 2147483647)),
-      read_half_width(node)};
-  if (node.has(kHysteresis)) {
-    const double value = node.at(kHysteresis).number();
-    if (!(value >= 0.0))
-      node.at(kHysteresis).fail(fmt::format("{}, must not be below 0", value));
-    sigma.hysteresis = value;
-  }
-  return sigma;
+  node.require_only(
+      {"factor", "devices", "half_width", "power_on", "temperature_rate"});
+  return {read_positive(node.at("factor")), read_power_on_sigma(node),
+          read_temperature_rate_sigma(node),
+          static_cast<int>(node.at("devices").integer(1, 2147483647)),
+          read_half_width(node)};
 }
 
 // Own parts: one for each curve, or none. Files of older programs have none.

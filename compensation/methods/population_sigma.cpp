@@ -111,28 +111,6 @@ void add_own_residuals(const TrainingRows& own, double grid_K,
   }
 }
 
-// Mean square of falling rows less the spline through rising ones; nothing
-// where the rows do not tell.
-std::optional<double> square_of_ways(const TrainingRows& own, double grid_K) {
-  const Eigen::ArrayXi way = leg_directions(own);
-  const TrainingRows rising = selected(own, way > 0);
-  const TrainingRows falling = selected(own, way < 0);
-  if (rising.size() == 0 || falling.size() == 0) return std::nullopt;
-  const double lowest = rising.temperature.minCoeff();
-  const double highest = rising.temperature.maxCoeff();
-  const TrainingRows shared = selected(
-      falling, falling.temperature >= lowest && falling.temperature <= highest);
-  if (shared.size() == 0) return std::nullopt;
-  try {
-    const CubicSpline curve = fit_cubic_spline(
-        rising.temperature, rising.bias,
-        spline_knots(rising.temperature, grid_K), SplineEnd::kNotAKnot);
-    return (shared.bias - curve.predict(shared.temperature)).square().mean();
-  } catch (const UndeterminedFit&) {
-    return std::nullopt;
-  }
-}
-
 // RMS of a device's soaks about its own spline: noise without lag.
 double soak_rms(const ResidualRows& rows) {
   const RowMask soaks = soak_rows(rows);
@@ -162,19 +140,6 @@ ResidualRows own_curve_residuals(const TrainingRows& rows, double grid_K,
   return found.rows();
 }
 
-std::optional<double> hysteresis_over_devices(const TrainingRows& rows,
-                                              double grid_K, double noise) {
-  double sum = 0.0, devices = 0.0;
-  for (int device = 0; device < device_count(rows); ++device)
-    if (const auto square =
-            square_of_ways(rows_of_device(rows, device), grid_K)) {
-      sum += *square;
-      devices += 1.0;
-    }
-  if (devices == 0.0) return std::nullopt;
-  return std::sqrt(std::max(sum / devices - 2.0 * noise * noise, 0.0));
-}
-
 std::optional<AdaptationSigma> adaptation_sigma(
     const Population& population, const std::vector<Input>& inputs,
     const TrainingRows& soaks, const ResidualRows& lagging) {
@@ -190,11 +155,8 @@ std::optional<AdaptationSigma> adaptation_sigma(
   const RowMask all = RowMask::Constant(rows.size(), true);
   if (rows.size() == 0 || !(scales > 0.0).all()) return std::nullopt;
   AdaptationSigma result;
-  result.hysteresis = hysteresis_over_devices(
-      soaks, population.temperatures(1) - population.temperatures(0),
-      population.point_noise);
   const double of_a_point =
-      std::hypot(population.point_noise, 0.5 * result.hysteresis.value_or(0.0));
+      std::hypot(population.point_noise, 0.5 * hysteresis_rms(population));
   result.factor = mean_square_amplitude(
       rows, all, ArrayXd::Constant(rows.size(), of_a_point), scales);
   result.devices = groups_among(rows, all);
@@ -228,8 +190,7 @@ BiasSigma adapted_sigma(const Population& population, const ArrayXd& deviation,
         "device", static_cast<std::size_t>(learned->devices),
         learned->half_width > 0.0 ? kSigmaLevel : 0.0, learned->half_width};
   }
-  const double hysteresis =
-      population.sigma ? population.sigma->hysteresis.value_or(0.0) : 0.0;
+  const double hysteresis = hysteresis_rms(population);
   const double run =
       std::sqrt(2.0 * noise.bias * noise.bias + 0.5 * hysteresis * hysteresis) /
       sigma.factor;

@@ -109,8 +109,7 @@ SigmaValidity validity_of(const TrainingRows& rows, const TrainingRows& unseen,
 // Of a device whose population has shown both ways of the temperature.
 bool knows_hysteresis(const FitSpec& kind) {
   const auto* adapted = std::get_if<AdaptedSpec>(&kind);
-  return adapted != nullptr && adapted->population.sigma &&
-         adapted->population.sigma->hysteresis;
+  return adapted != nullptr && adapted->population.hysteresis.size() > 0;
 }
 
 double rms_about(double value, const ArrayXd& bias) {

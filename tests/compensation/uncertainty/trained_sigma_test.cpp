@@ -359,22 +359,29 @@ TrainingRows both_ways(int devices, double hysteresis, double noise) {
 }
 
 // The turn-on offset of each way is taken off.
-TEST(AdaptationSigma, TellsUpFromDown) {
+TEST(HysteresisRms, TellsUpFromDown) {
   const auto found = [](double a, double noise) {
-    return hysteresis_over_devices(both_ways(400, a, noise), 5.0, noise);
+    Population population =
+        fit_population(kTemperatureInput, both_ways(400, a, noise), 5.0);
+    population.point_noise = noise;
+    return hysteresis_rms(population);
   };
-  EXPECT_NEAR(found(0.3, 0.0).value(), 0.3, 0.03);  // of 400 numbers: 3.5 %
-  EXPECT_NEAR(found(0.3, 0.1).value(), 0.3, 0.04);
-  EXPECT_NEAR(found(0.0, 0.1).value(), 0.0, 0.05);  // (0.02 7 %)^(1/2)
+  EXPECT_NEAR(found(0.3, 0.0), 0.3, 0.03);  // of 400 numbers: 3.5 %
+  EXPECT_NEAR(found(0.3, 0.1), 0.3, 0.04);
+  EXPECT_NEAR(found(0.0, 0.1), 0.0, 0.05);  // (0.02 7 %)^(1/2)
   EXPECT_EQ(
-      hysteresis_over_devices(parabolas(3, 3, every_five_kelvins()), 5.0, 0.0),
-      std::nullopt);
+      hysteresis_rms(fit_population(
+          kTemperatureInput, parabolas(20, 6, every_five_kelvins()), 5.0)),
+      0.0);
 }
 
 TEST(AdaptedSigma, CountsTheOtherWayHalfOfTheTime) {
   Population population = fit_population(
       kTemperatureInput, parabolas(20, 6, every_five_kelvins()), 5.0);
-  population.sigma = AdaptationSigma{.factor = 0.5, .hysteresis = 0.2};
+  population.sigma = AdaptationSigma{.factor = 0.5};
+  population.point_noise = 0.03;
+  population.hysteresis = Eigen::MatrixXd::Constant(
+      20, population.grid(), 0.5 * std::sqrt(0.2 * 0.2 + 2.0 * 0.03 * 0.03));
   const ArrayXd deviation = ArrayXd::Constant(population.grid(), 0.4);
   const BiasSigma sigma = adapted_sigma(population, deviation, {0.03, 0.01});
   EXPECT_NEAR(sigma.at(10.0, 0.0, 0.0),
