@@ -158,9 +158,10 @@ class _Table:
                 shape: tuple[int, ...]) -> xr.Dataset:
         """Return all of it."""
         dimensions = (*axes, "time")
+        places: dict[str, Any] = {
+            **axes, "time": ("time", self._time, self._attributes["time"])}
         made: xr.Dataset = _lazy.xarray().Dataset(
             {name: (dimensions, rows.reshape(*shape, -1),
                     self._attributes[name])
-             for name, rows in self._rows.items()},
-            {**axes, "time": ("time", self._time, self._attributes["time"])})
+             for name, rows in self._rows.items()}, places)
         return made

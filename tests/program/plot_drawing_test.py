@@ -216,12 +216,15 @@ class Ticks(unittest.TestCase):
         for decades in (0.02, 0.1, 0.3, 0.7, 1, 2, 4, 8, 15):
             for low in 10 ** random.uniform(-9, 6, 4):
                 spans.append((low, low * 10**decades))
-        for low, high in spans:
+        for (low, high), marks in itertools.product(spans, [(), (1, 2, 5)]):
+            if marks and high > 100 * low:
+                continue  # for less than two decades
             with plots.look():
-                figure = Figure(figsize=(style.WIDTH / 2, 1.8), layout="constrained")
+                figure = Figure(figsize=(style.WIDTH / 2, 1.8),
+                                layout="constrained")
                 axes = figure.subplots()
                 for axis in (axes.xaxis, axes.yaxis):
-                    style.log_scale(axis)
+                    style.log_scale(axis, marks)
                 axes.set(xlim=(low, high), ylim=(low, high))
                 figure.draw_without_rendering()
                 for axis in (axes.xaxis, axes.yaxis):

@@ -121,7 +121,11 @@ beamgyro\\._core\\.[A-Z]\\w+(\\.__init__)?
 # typeshed differ from Python itself.
 beamgyro\\.([a-z_0-9]+\\.)*(Callable|Generic|Iterable|Iterator|Mapping|ModuleType|NamedTuple|Sequence|Sized|TypeGuard|field)(\\.\\w+)?
 # An alias of a Literal, which stubtest takes for a Union.
-beamgyro\\._scenario\\.Fidelity
+beamgyro\\._(many|scenario)\\.Fidelity
+# Of packages without types, imported for annotations alone; what matplotlib
+# adds to every class of artists.
+beamgyro\\._\\w+\\.(Axes|Figure|pd)
+beamgyro\\.plots\\.style\\.Picture\\.set
 # Properties of the compiled part (Final in the stub) and of the class Native,
 # which cannot be set, as mypy knows.
 beamgyro\\._core\\.[A-Z]\\w+\\.(curve|device|duration|files|highest_temperature|lowest_temperature|method|output_rate|profiles)

@@ -95,6 +95,8 @@ def test_limits_undecided_ones_and_warnings_are_shown(sweeps):
 
 def test_progress_in_a_notebook_is_a_bar_of_tqdm(monkeypatch, capsys):
     pytest.importorskip("tqdm")
+    # Another test may have imported it.
+    monkeypatch.delitem(sys.modules, "ipykernel", raising=False)
     assert _progress.notebook_tqdm() is None
     monkeypatch.setitem(sys.modules, "ipykernel", sys)
     monkeypatch.setattr(_progress, "_DELAY_S", 0)

@@ -4,8 +4,6 @@ the channels of the drive loop over time."""
 
 from __future__ import annotations
 
-import csv
-import re
 import pathlib
 from typing import Any, Mapping, Sequence
 
@@ -18,6 +16,7 @@ from matplotlib.patches import Patch
 from . import hdf5, style
 from .documents import PlotError
 from .envelope import MEANS, bins_of, envelope, lonely, spans
+from .logs import csv_columns, device_of
 from .units import converted, duration, time_unit, unit_of
 
 Values = npt.NDArray[np.float64]
@@ -90,23 +89,6 @@ class Run:
         return truth is not None and bool(np.any(truth != 0))
 
 
-def device_of(data: Mapping[Any, Any], attributes: Mapping[str, Any]) -> str:
-    """The device of a simulated run with its seed; of another run nothing."""
-    source = hdf5.text_of(attributes.get("source", ""))
-    if "virtual gyro" not in source:
-        return ""
-    words = "virtual gyro"
-    scenario = getattr(data, "encoding", {}).get("beamgyro", {}).get("scenario")
-    if scenario is None and "meta/scenario" in data:
-        scenario = hdf5.text_of(data["meta/scenario"][()])
-    named = re.search(r'^device\s*=\s*"(?:[^"]*/)?([^"/]+)\.toml"',
-                      scenario or "", re.MULTILINE)
-    if named:
-        words += f" {named[1]}"
-    return f"{words}, seed {attributes['seed']}" if "seed" in attributes \
-        else words
-
-
 def _status(values: Values, name: str) -> npt.NDArray[np.uint8]:
     wrong = ~((values >= 0) & (values <= 255) & (values == np.floor(values)))
     if wrong.any():
@@ -139,34 +121,9 @@ def _values(variable: Any, key: str, name: str) -> Values:
 def read(path: pathlib.Path, name: str) -> Run:
     with open(path, "rb") as file:
         if file.read(4) != b"\x89HDF":
-            return Run(_read_csv(path), name)
+            return Run(csv_columns(path, ("time", "status", *DRAWN)), name)
     with hdf5.opened(path) as recording:
         return Run(recording.contents, name)
-
-
-def _read_csv(path: pathlib.Path) -> dict[str, Any]:
-    with open(path, newline="", encoding="utf-8-sig") as file:
-        try:
-            header = next(csv.reader(file))
-            names, units = zip(*(_column(head) for head in header))
-            wanted = [k for k, key in enumerate(names)
-                      if key in ("time", "status", *DRAWN)]
-            table = np.loadtxt(file, delimiter=",", usecols=wanted, ndmin=2)
-        except UnicodeDecodeError:
-            raise PlotError(f"{path}: holds bytes that are not UTF-8; "
-                            "expected a text file") from None
-        except ValueError as error:
-            raise PlotError(f"{path}: {error}; expected numbers") from None
-    data: dict[str, Any] = {}
-    for k, values in zip(wanted, table.T):
-        data[names[k]] = values if names[k] == "status" else converted(
-            names[k], values, units[k] or unit_of(names[k]), f"{path}: ")
-    return data
-
-
-def _column(head: str) -> tuple[str, str]:
-    name, _, unit = head.strip().partition("[")
-    return name.strip(), unit.rstrip("]").strip()
 
 
 # --- drawing ---
