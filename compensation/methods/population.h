@@ -25,7 +25,6 @@ struct AdaptationSigma {
   int devices = 0;
   double half_width = 0.0;  // as of SigmaCalibration
 };
-};
 
 /// What a device has of its own in a curve, such as spurious resonances at
 /// temperatures of its own: a Gaussian process that is independent of all other

@@ -258,7 +258,7 @@ std::string objection_to_claim(const std::optional<GroupErrors>& model,
                                double weight) {
   if (!model || !constant)
     return "these scores are on the data that were fitted; they say nothing "
-           "about new data (--held-out, --cv)";
+           "about new data: hold out runs, or cross-validate";
   const GroupErrors gain = *constant - *model;
   const double rms = rms_of(*model), plain = rms_of(*constant);
   const std::string figures = fmt::format(

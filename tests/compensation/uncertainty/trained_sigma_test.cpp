@@ -378,7 +378,7 @@ TEST(HysteresisRms, TellsUpFromDown) {
 TEST(AdaptedSigma, CountsTheOtherWayHalfOfTheTime) {
   Population population = fit_population(
       kTemperatureInput, parabolas(20, 6, every_five_kelvins()), 5.0);
-  population.sigma = AdaptationSigma{.factor = 0.5};
+  population.sigma.emplace().factor = 0.5;
   population.point_noise = 0.03;
   population.hysteresis = Eigen::MatrixXd::Constant(
       20, population.grid(), 0.5 * std::sqrt(0.2 * 0.2 + 2.0 * 0.03 * 0.03));
