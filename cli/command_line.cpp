@@ -147,8 +147,9 @@ CommandLine::CommandLine(const std::string& description, std::string version)
   app_->fallthrough();
   common_ = std::make_unique<Command>(*app_, HelpOfCommand{});
   common_->group("Options of every command");
-  common_->flag({"-q,--quiet", "", "Prints results and errors, no notes, no progress"},
-                quiet_);
+  common_->flag(
+      {"-q,--quiet", "", "Prints results and errors, no notes, no progress"},
+      quiet_);
   common_->flag({"-h,--help", "", "Prints this help"}, asks_help_);
   common_->flag({"--version", "", "Prints the version and those of libraries"},
                 asks_version_);
