@@ -241,8 +241,8 @@ TEST(Cautions, AClaimNeedsAGainAboveItsStandardError) {
   // Sure, but of no use: 0.05 % of the rms.
   EXPECT_TRUE(holds(objection_to_claim(0.999 * constant, constant),
                     "a useful gain is 10 %"));
-  EXPECT_TRUE(holds(objection_to_claim({}, constant),
-                    "nothing about new data"));
+  EXPECT_TRUE(
+      holds(objection_to_claim({}, constant), "nothing about new data"));
 }
 
 }  // namespace
