@@ -35,18 +35,14 @@ struct PlanArguments {
 };
 
 fs::path device_of(const PlanArguments& arguments) {
-  return arguments.device.empty() ? shipped_file(kShippedDevice)
-                                  : fs::path(arguments.device);
-}
-
-Device read_device_of(const PlanArguments& arguments) {
-  const fs::path device = device_of(arguments);
-  if (device.empty())
+  if (!arguments.device.empty()) return arguments.device;
+  const fs::path shipped = shipped_file(kShippedDevice);
+  if (shipped.empty())
     throw std::invalid_argument(
         fmt::format("{} is not beside this program; expected --device "
                     "DEVICE.toml",
                     kShippedDevice));
-  return Device::read(device);
+  return shipped;
 }
 
 // Where the device is copied to, beside the schedule, so that both can go to
@@ -134,7 +130,7 @@ int run_plan(const PlanArguments& arguments) {
   check_goal(options);
   check_outputs(arguments);
   const auto population = Compensator::read(arguments.population);
-  const Device device = read_device_of(arguments);
+  const Device device = Device::read(device_of(arguments));
   const SoakPlanResult result =
       planned(population, device, options, candidates_of(arguments.candidates));
   if (!arguments.picture.empty()) draw_plan(result.json, arguments.picture);

@@ -11,7 +11,7 @@ import tomllib
 import numpy as np
 
 from plan_test_population import population_of
-from program import SCENARIOS, ProgramTest
+from program import PROGRAM, SCENARIOS, ProgramTest
 
 
 class Plan(ProgramTest):
@@ -197,6 +197,15 @@ class Plan(ProgramTest):
                   "device.toml")
         self.assertIn('device = "../device.toml"',
                       self.text("elsewhere/soaks.toml"))
+
+    def test_without_the_shipped_device_one_is_asked_for(self):
+        (self.dir / "elsewhere").mkdir()
+        program = shutil.copy(PROGRAM, self.dir / "elsewhere")
+        for output in [], ["-o", "soaks.toml"]:
+            self.rejected("plan", "population.json", "--soaks", 3, *output,
+                          program=program, says=[
+                              "scenarios/devices/nominal.toml is not beside "
+                              "this program; expected --device DEVICE.toml"])
 
     def test_ways_that_go_down_have_one_steady_row_after_power_on(self):
         plan = self.plan("--soaks", "2", "-o", "soaks.toml", "--device",
