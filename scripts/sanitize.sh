@@ -10,7 +10,7 @@
 #   tidy      clang-tidy on every source
 #   deep      the benchmarks, compiled; the tests marked `deep`: packages, the site
 #             of the pages, a browser, Slurm, Octave, an emulated Cortex-M4, more
-#             draws; a fault at every call on files
+#             draws; a fault at every call on files and pipes
 #   packages  the Debian packages and the wheel in a bare Debian 12: installed,
 #             run, removed
 #   image     the container image on that Debian, built and run
@@ -111,7 +111,7 @@ if wanted deep || wanted packages || wanted image; then
       unit_tests "deep unit tests" release --label-regex deep
       program_tests "deep tests of the program" release -n "$(nproc)" -m deep
       BEAMGYRO_ALL_FAULTS=1 program_tests "faults at every call" release \
-        -n "$(nproc)" tests/program/fault_test.py
+        -n "$(nproc)" tests/program/fault_test.py tests/program/pipe_faults_test.py
     fi
     if wanted packages || wanted image; then
       rm -rf build/packages

@@ -5,6 +5,8 @@
  *
  *   FAULT_PREFIX=DIR   only calls on DIR and what is below it are numbered
  *   FAULT_LOG=FILE     each of them is added to it as "NUMBER CALL PATH"
+ *   FAULT_PIPES=1      only calls on pipes of the first process are numbered,
+ *                      and those that make a pipe or a process, or wait
  *   FAULT_CALL=N       the call to strike, from 1
  *   FAULT_KIND=KIND    what happens to it:
  *     EIO, ENOSPC, EINTR   it does nothing and fails with this error; but
@@ -21,7 +23,9 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <poll.h>
 #include <signal.h>
+#include <spawn.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -46,6 +50,7 @@ static enum strike kind;
 static int error_number;
 static atomic_long calls;
 static char *paths[MOST_FILES]; /* of the descriptors that are numbered */
+static int strikes_pipes;
 
 /* The function that would have been called without this library. */
 #define NEXT(name) ((__typeof__(&name))dlsym(RTLD_NEXT, #name))
@@ -60,8 +65,14 @@ __attribute__((constructor)) static void read_plan(void) {
                {"torn", kTorn, 0},       {"kill", kKill, 0}};
   const char *below = getenv("FAULT_PREFIX"), *log = getenv("FAULT_LOG");
   const char *number = getenv("FAULT_CALL"), *name = getenv("FAULT_KIND");
-  if (!below || strlen(below) >= sizeof prefix) return;
-  strcpy(prefix, below);
+  if (getenv("FAULT_PIPES")) {
+    strikes_pipes = 1;
+    unsetenv("FAULT_PIPES"); /* not in processes that it starts */
+    below = NULL;
+  } else if (!below || strlen(below) >= sizeof prefix) {
+    return;
+  }
+  if (below) strcpy(prefix, below);
   prefix_size = strlen(prefix);
   if (log) log_file = NEXT(open)(log, O_WRONLY | O_CREAT | O_APPEND, 0666);
   if (!number || !name) return;
@@ -253,6 +264,26 @@ int close(int file) {
   if (how != kError) return result;
   errno = kept;
   return -1;
+}
+
+int pipe2(int ends[2], int flags) {
+  if (strikes_pipes && strike("pipe", "pipe") == kError) return -1;
+  const int result = NEXT(pipe2)(ends, flags);
+  for (int k = 0; result == 0 && strikes_pipes && k < 2; ++k)
+    if (ends[k] < MOST_FILES) forget(ends[k]), paths[ends[k]] = strdup("pipe");
+  return result;
+}
+int poll(struct pollfd *waits, nfds_t count, int timeout) {
+  if (strikes_pipes && strike("poll", "pipe") == kError) return -1;
+  return NEXT(poll)(waits, count, timeout);
+}
+int posix_spawnp(pid_t *id, const char *file,
+                 const posix_spawn_file_actions_t *actions,
+                 const posix_spawnattr_t *attributes, char *const words[],
+                 char *const variables[]) {
+  if (strikes_pipes && strike("spawn", "process") == kError)
+    return error_number;
+  return NEXT(posix_spawnp)(id, file, actions, attributes, words, variables);
 }
 
 /* A call on one descriptor, and one on one path. */

@@ -244,6 +244,18 @@ ChildProcess::~ChildProcess() {
   free_process_slot(slot_, folder_);
 }
 
+namespace {
+
+// After a call on a pipe has failed with errno. Throws std::system_error unless
+// it may be made once more.
+void require_another_try() {
+  if (errno != EAGAIN && errno != EINTR)
+    throw std::system_error(errno, std::generic_category(),
+                            "a pipe to a process");
+}
+
+}  // namespace
+
 bool read_available(std::optional<OpenFile>& pipe, std::string& into) {
   std::array<char, 1 << 16> bytes;
   const ssize_t n = ::read(pipe->descriptor(), bytes.data(), bytes.size());
@@ -251,7 +263,10 @@ bool read_available(std::optional<OpenFile>& pipe, std::string& into) {
     into.append(bytes.data(), static_cast<std::size_t>(n));
     return true;
   }
-  if (n == 0 || (errno != EAGAIN && errno != EINTR)) pipe.reset();
+  if (n == 0)
+    pipe.reset();
+  else
+    require_another_try();
   return false;
 }
 
@@ -266,7 +281,11 @@ std::string read_until_end(OpenFile& file, double seconds, bool& in_time) {
     if (::poll(&wait, 1, static_cast<int>(1e3 * left) + 1) <= 0) continue;
     std::array<char, 4096> bytes;
     const ssize_t n = ::read(file.descriptor(), bytes.data(), bytes.size());
-    if (n <= 0) return text;
+    if (n == 0) return text;
+    if (n < 0) {
+      require_another_try();
+      continue;
+    }
     text.append(bytes.data(), static_cast<std::size_t>(n));
     if (text.size() > kLongestReading) return text;
   }
@@ -276,7 +295,10 @@ std::size_t write_available(std::optional<OpenFile>& pipe,
                             std::string_view bytes) {
   const ssize_t n = ::write(pipe->descriptor(), bytes.data(), bytes.size());
   if (n > 0) return static_cast<std::size_t>(n);
-  if (errno != EAGAIN && errno != EINTR) pipe.reset();
+  if (errno == EPIPE)
+    pipe.reset();
+  else
+    require_another_try();
   return 0;
 }
 

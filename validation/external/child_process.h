@@ -73,6 +73,9 @@ class ChildProcess {
   bool killed_ = false;
 };
 
+// The three functions below try again after a signal, and throw
+// std::system_error where a pipe fails otherwise.
+
 /// Appends to `into` what a pipe of a child holds and closes it at its end.
 /// Returns whether there was something.
 bool read_available(std::optional<OpenFile>& pipe, std::string& into);
