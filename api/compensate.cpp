@@ -59,7 +59,7 @@ std::vector<std::string> sigma_warnings(const CompensatorSource& source,
   if (!source.trained || !source.trained->sigma) return {};
   std::vector<std::string> warnings =
       reasons_against_sigma(source.trained->sigma->validity, recording);
-  for (std::string& warning : warnings) warning = name + ": " + warning;
+  for (std::string& warning : warnings) warning.insert(0, name + ": ");
   return warnings;
 }
 

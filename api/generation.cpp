@@ -100,8 +100,8 @@ GenerationOutcome generate(const Campaign& campaign,
   make_files(plan, files, options, set);
   const internal::SetState state = set.finish();
   internal::require_nothing_lost(directory, {}, plan.manifest_head(), state);
-  for (std::string& text : internal::caution_texts(state))
-    warnings.push_back(directory.string() + ": " + std::move(text));
+  for (const std::string& text : internal::caution_texts(state))
+    warnings.push_back(fmt::format("{}: {}", directory.string(), text));
   return {.files = state.entries.size(),
           .planned_files = state.planned,
           .files_made = files.size(),
