@@ -31,8 +31,10 @@ bool has_sound_rows(std::span<const std::byte> header) {
   const std::uint64_t bits = little_number(header, kBits, 2);
   for (const std::uint64_t size : {width, first, largest})
     if (!std::has_single_bit(size)) return false;
-  const auto in_first_row = static_cast<std::uint64_t>(std::countr_zero(width) +
-                                                       std::countr_zero(first));
+  const auto bits_of = [](std::uint64_t power) {
+    return static_cast<std::uint64_t>(std::countr_zero(power));
+  };
+  const std::uint64_t in_first_row = bits_of(width) + bits_of(first);
   return first <= largest && in_first_row <= bits && bits <= kMostBits &&
          little_number(header, kRows, 2) <= bits - in_first_row + 1;
 }
