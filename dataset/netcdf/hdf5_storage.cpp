@@ -2,11 +2,15 @@
 #include "dataset/netcdf/hdf5_storage.h"
 
 #include <fmt/format.h>
+#include <libdeflate.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
+#include <new>
 #include <vector>
 
 #include "dataset/netcdf/hdf5_id.h"
@@ -77,6 +81,28 @@ Filters filters_of(hid_t properties, const std::string& name) {
   return met;
 }
 
+/// Returns whether `packed` bytes of the chunk at `place`, of `stored` in all,
+/// inflate to `size` bytes. HDF5 reads one that inflates to less beyond its
+/// end.
+bool inflates_to(hid_t variable, const std::string& name, const hsize_t* place,
+                 std::uint64_t stored, std::uint64_t packed,
+                 std::uint64_t size) {
+  constexpr std::uint64_t kMostStored = 1024;  // more than is deflated
+  if (packed > stored || stored > product(size, 2) + kMostStored) return false;
+  std::vector<std::byte> bytes(stored), values(size);
+  std::uint32_t skipped_filters = 0;
+  check_hdf5(H5Dread_chunk(variable, H5P_DEFAULT, place, &skipped_filters,
+                           bytes.data()),
+             "read " + name);
+  const std::unique_ptr<libdeflate_decompressor,
+                        void (*)(libdeflate_decompressor*)>
+      inflate(libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
+  if (inflate == nullptr) throw std::bad_alloc();
+  return libdeflate_zlib_decompress(inflate.get(), bytes.data(), packed,
+                                    values.data(), values.size(),
+                                    nullptr) == LIBDEFLATE_SUCCESS;
+}
+
 /// Checks a chunked variable of values of `width` bytes: every chunk is there
 /// and large enough.
 void check_chunks(hid_t variable, hid_t properties, const std::string& name,
@@ -139,8 +165,19 @@ void check_chunks_of_row(hid_t variable, const std::string& name, hsize_t row) {
       return met != filters.end() && (met->second & skipped_filters) == 0;
     };
     const std::uint64_t sum = passed(H5Z_FILTER_FLETCHER32) ? kSumBytes : 0;
-    if (!passed(H5Z_FILTER_DEFLATE) && stored < size + sum)
-      too_large(name, size, stored);
+    if (!passed(H5Z_FILTER_DEFLATE)) {
+      if (stored < size + sum) too_large(name, size, stored);
+      continue;
+    }
+    // A sum that comes after deflate is beside what that has packed.
+    const std::uint64_t beside = sum > 0 && filters.at(H5Z_FILTER_FLETCHER32) >
+                                                filters.at(H5Z_FILTER_DEFLATE)
+                                     ? sum
+                                     : 0;
+    if (!inflates_to(variable, name, place.data(), stored, stored - beside,
+                     size + sum - beside))
+      throw Hdf5Error(fmt::format(
+          "a chunk of {} does not inflate to its {} bytes", name, size));
   }
 }
 

@@ -16,7 +16,7 @@ using namespace beamgyro::internal;
 /// without the line of their checksum.
 std::vector<std::string> recordings() {
   std::vector<std::string> files;
-  for (const std::size_t samples : {4, 400}) {
+  for (const std::size_t samples : {4u, 400u}) {
     const std::filesystem::path file = scratch_folder() / "seed.h5";
     beamgyro::write_recording(sample_recording(samples), file);
     const std::string text = read_text_file(file);

@@ -108,7 +108,7 @@ TEST_F(Hdf5Damage, AttributesWithPartsThatEndBehindThemAreRefused) {
   const Bytes whole = recording_bytes(sample_recording(20));
   const std::vector<MetadataSum> sums = metadata_sums(whole);
   for (const char* name : {"filetype", "DIMENSION_LIST", "long_name"})
-    for (const std::size_t before : {4, 2}) {  // sizes of type and of shape
+    for (const std::size_t before : {4u, 2u}) {  // sizes of type and of shape
       Bytes bytes = whole;
       put(bytes, place_of(whole, name) - before, std::uint16_t{0xff08});
       mend_metadata(bytes, sums);
