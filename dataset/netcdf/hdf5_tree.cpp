@@ -99,7 +99,36 @@ bool is_sound_node(Tree& tree, std::uint64_t depth, std::uint64_t place,
   return true;
 }
 
+// "Version 1 B-trees" of the same, that index chunks.
+constexpr std::string_view kChunkTreeStart = "TREE\x01";
+constexpr std::size_t kChunkTreeHead = 24;
+constexpr std::size_t kChildren = 64;      // of a node, which HDF5 writes
+constexpr std::size_t kBeforePlace = 8;    // of a key: size and filters
+constexpr std::uint64_t kMostFilters = 8;  // of a chunk
+
 }  // namespace
+
+bool is_sound_chunk_node(std::span<const std::byte> node) {
+  if (!starts_with(node, kChunkTreeStart)) return true;
+  const std::size_t children_bytes = kChildren * kAddressBytes;
+  if (node.size() < kChunkTreeHead + children_bytes) return true;
+  const std::size_t keys = node.size() - kChunkTreeHead - children_bytes;
+  const std::size_t key = keys / (kChildren + 1);
+  if (keys % (kChildren + 1) != 0 || key <= kBeforePlace || key % 8 != 0)
+    return true;  // of another shape
+  const std::uint64_t count = little_number(node, 6, 2);
+  if (count > kChildren) return false;
+  std::vector<std::uint64_t> before, place((key - kBeforePlace) / 8);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t at = kChunkTreeHead + k * (key + kAddressBytes);
+    if (little_number(node, at + 4, 4) >> kMostFilters != 0) return false;
+    for (std::size_t i = 0; i < place.size(); ++i)
+      place[i] = little_number(node, at + kBeforePlace + 8 * i, 8);
+    if (k > 0 && !(before < place)) return false;
+    before = place;
+  }
+  return true;
+}
 
 bool is_tree(std::span<const std::byte> header) {
   return starts_with(header, kTreeStart);

@@ -8,6 +8,12 @@
 
 namespace beamgyro::internal {
 
+/// Returns false for a node of a B-tree of version 1 that indexes chunks if
+/// their places do not increase, or if one has passed filters that no file of
+/// beamgyro has. HDF5 looks a chunk up in one way to tell of it and in another
+/// to read it, and finds two then. True for other bytes.
+bool is_sound_chunk_node(std::span<const std::byte> node);
+
 /// Returns whether these are the first bytes of a B-tree of version 2.
 bool is_tree(std::span<const std::byte> header);
 
