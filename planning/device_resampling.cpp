@@ -47,8 +47,8 @@ class SortedDraws {
     std::size_t seen = 0, next = 0;
     for (const std::size_t k : order_) {
       seen += counts[k % draws_.devices];
-      while (next<size&& static_cast<double>(seen)> std::round(shares[next] *
-                                                               last))
+      const auto below = static_cast<double>(seen);
+      while (next != size && below > std::round(shares[next] * last))
         found[next++] = draws_.rms[k];
     }
     return found;

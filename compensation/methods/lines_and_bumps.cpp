@@ -76,21 +76,19 @@ LinesAndBumps fit_lines_and_bumps(const ArrayXd& t, const ArrayXd& bias,
   const MatrixXd squares = A.transpose() * A;
   const VectorXd moments = A.transpose() * b;
   const MatrixXd kinks = squares_of_kinks(knots.size(), A.cols());
-  double variance = kFirstNoise * kFirstNoise * spread;
+  double variance = kFirstNoise * kFirstNoise * spread, left = 0.0;
   VectorXd factors;
   for (int pass = 0; pass < 2; ++pass) {
     MatrixXd normal = squares + variance / spread * kinks;
     normal.diagonal().tail(bumps.cols()).array() += variance;
     normal.diagonal().array() += kDamping * squares.trace();
     factors = Cholesky(normal).solve(moments);
-    variance = std::max(
-        (b - A * factors).squaredNorm() / static_cast<double>(b.size()),
-        kLeastNoise * kLeastNoise * spread);
+    left = (b - A * factors).squaredNorm() / static_cast<double>(b.size());
+    variance = std::max(left, kLeastNoise * kLeastNoise * spread);
   }
   return {{knots, factors.head(knots.size()).array() + mean},
           factors.tail(bumps.cols()),
-          std::sqrt((b - A * factors).squaredNorm() /
-                    static_cast<double>(b.size()))};
+          std::sqrt(left)};
 }
 
 }  // namespace beamgyro::internal

@@ -9,7 +9,6 @@
 #include "compensation/methods/population.h"
 #include "compensation/models/array_view.h"
 #include "compensation/models/bias_function.h"
-#include "compensation/rows/row_groups.h"
 
 namespace beamgyro::internal {
 namespace {

@@ -126,8 +126,7 @@ ResonanceCurve with_bias_of_soaks(ResonanceCurve curve, const ArrayXd& beam,
   const VectorXd shares =
       bump_shares(soaks.temperatures.matrix(), soaks.values.matrix(),
                   twin * bumps_of(curve, soaks.temperatures), scatter);
-  curve.bias_heights =
-      (shares.array() * curve.quadrature_heights.array() * twin).matrix();
+  curve.bias_heights = twin * shares.cwiseProduct(curve.quadrature_heights);
   const ArrayXd left =
       bias - beam.unaryExpr([&](double t) { return curve.bumps_at(t); });
   curve.rest = at_soaks(beam, left, temperature);
@@ -142,8 +141,7 @@ ResonanceCurve with_bias_of_all_rows(ResonanceCurve curve, const ArrayXd& beam,
   LinesAndBumps fit =
       fit_lines_and_bumps(beam, bias, twin * bumps_of(curve, beam),
                           knot_spacing_K / temperature.half_width);
-  curve.bias_heights =
-      (fit.shares.array() * curve.quadrature_heights.array() * twin).matrix();
+  curve.bias_heights = twin * fit.shares.cwiseProduct(curve.quadrature_heights);
   curve.rest = std::move(fit.lines);
   return curve;
 }
