@@ -3,6 +3,10 @@
 """A network of torch, trained on a generated set and validated.
 
 torch_network.py CAMPAIGN.toml DIRECTORY [DEVICES]
+
+No signal tells a network the zero of a unit that it has not seen. The
+campaign should not draw readout.offset_trim_deg_per_s: its units are then those
+whose zero has been measured and set.
 """
 
 from __future__ import annotations
