@@ -21,6 +21,10 @@ constexpr double kMostMissing = 10.0;  // rows between two that follow
 constexpr double kJump = 0.5 * kPointWidth;
 constexpr Index kReach = 3;    // rows: noise of the temperature averages out
 constexpr double kFast = 0.9;  // quantile of the rates of a stretch
+// Of a soak that settles: the rate of its last rows over that of its first, at
+// most, and the temperatures that it spans [K].
+constexpr double kSettling = 0.75;
+constexpr double kSettlingSpan = 2.0 * kPointWidth;
 
 // Stretches of rows between which the temperature changes slowly, also where
 // rows are left out.
@@ -57,17 +61,32 @@ std::vector<double> rates(const TrainingRows& rows, const RowStretch& of) {
   return found;
 }
 
-double fast_rate(std::vector<double> rates) {
-  const auto fast =
-      rates.begin() +
-      static_cast<std::ptrdiff_t>(kFast * static_cast<double>(rates.size()));
-  std::ranges::nth_element(rates, fast);
-  return *fast;
+double rate_quantile(std::vector<double> own, double share) {
+  const auto at = own.begin() + static_cast<std::ptrdiff_t>(
+                                    share * static_cast<double>(own.size()));
+  std::ranges::nth_element(own, at);
+  return *at;
+}
+
+double stretch_span(const TrainingRows& rows, const RowStretch& of) {
+  const auto T = rows.temperature.segment(of.begin, of.end - of.begin);
+  return T.maxCoeff() - T.minCoeff();
+}
+
+// The rate that rows of a stretch with a ramp stay below. Of a soak after a
+// ramp that is left out, whose lag is corrected while it settles, no row may be
+// slow: the slower half stays.
+double slow_rate(const TrainingRows& rows, const RowStretch& of,
+                 const std::vector<double>& own) {
+  const double limit = rate_quantile(own, kFast) / 2.0;
+  const bool settles = std::ranges::min(own) >= limit &&
+                       stretch_span(rows, of) <= kSettlingSpan &&
+                       own.back() <= kSettling * own.front();
+  return settles ? rate_quantile(own, 0.5) : limit;
 }
 
 bool holds_a_ramp(const TrainingRows& rows, const RowStretch& of) {
-  const auto T = rows.temperature.segment(of.begin, of.end - of.begin);
-  return of.end - of.begin > 2 && T.maxCoeff() - T.minCoeff() > kPointWidth;
+  return of.end - of.begin > 2 && stretch_span(rows, of) > kPointWidth;
 }
 
 }  // namespace
@@ -79,7 +98,7 @@ TrainingRows rows_of_soaks(const TrainingRows& all, double steady_K_per_min) {
     for (const RowStretch& stretch : following_rows(rows, steady_K_per_min)) {
       if (!holds_a_ramp(rows, stretch)) continue;
       const std::vector<double> own = rates(rows, stretch);
-      const double limit = fast_rate(own) / 2.0;
+      const double limit = slow_rate(rows, stretch, own);
       for (std::size_t k = 0; k < own.size(); ++k)
         keep(stretch.begin + static_cast<Index>(k)) = own[k] < limit;
     }

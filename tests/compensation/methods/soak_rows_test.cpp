@@ -66,6 +66,34 @@ TEST(SoakRows, SoaksAloneStay) {
   EXPECT_EQ(rows_of_soaks(rows, 0.2).size(), rows.size());
 }
 
+// Rows a minute of a planned soak with its lag corrected, after a ramp of 2
+// K/min: they span 2.2 K, and the last ones are not half as slow as the first.
+TEST(SoakRows, ASoakThatSettlesIsNoRamp) {
+  TrainingRows rows =
+      rows_of({{0, 0, 0.0, 1.0, 27}}, [](double, int) { return 0.0; });
+  for (Index k = 0; k < rows.size(); ++k) {
+    const auto soak = static_cast<double>(k / 9), minute = double(k % 9);
+    rows.time(k) = 60.0 * (30.0 * soak + minute);
+    rows.temperature(k) = 30.0 - 30.0 * soak - 3.7 * std::exp(-minute / 9.0);
+  }
+  const TrainingRows soaks = rows_of_soaks(rows, 0.2);
+  for (const double last : {8.0, 38.0, 68.0}) {
+    EXPECT_TRUE((soaks.time == 60.0 * last).any()) << last;
+    EXPECT_FALSE((soaks.time == 60.0 * (last - 8.0)).any()) << last;
+  }
+  EXPECT_GE(soaks.size(), 9);
+}
+
+// A piece of a ramp that is as short goes on as fast.
+TEST(SoakRows, APieceOfARampIsNoSoak) {
+  TrainingRows rows = calibration(2.0, 0.2);
+  const Index first = 40;  // row of the second soak
+  for (Index k = 0; k < 12; ++k)
+    rows.temperature(first + k) = -26.0 + 0.25 * static_cast<double>(k);
+  const TrainingRows soaks = rows_of_soaks(rows, 0.2);
+  EXPECT_FALSE((soaks.temperature < -22.0 && soaks.temperature > -39.0).any());
+}
+
 // The user's own steady sweep: there is nothing else to take.
 TEST(SoakRows, AnEvenSweepStays) {
   const TrainingRows rows =
