@@ -10,8 +10,8 @@ and trimmed. A population is learned from the sweeps of --devices units, of
 lifelike ones up and down. Of --units further ones, of another seed, each is
 
 - adapted from 3, 5 and 7 soaks, as they are shipped and as `plan` plans them;
-- trained alone: a cubic and a spline of the soaks of a sweep, and of a sweep, a
-  ramp up and down and a warm-up.
+- trained alone: a cubic and a spline of a sweep, a ramp up and down and a
+  warm-up. Of a sweep alone they state no sigma.
 
 Scored are other runs of the unit with all noise, after another power-on: the
 soaks of a sweep once they have settled and before, the ramps of a run up and
@@ -164,12 +164,8 @@ class Study(foreign_units.Study):
     def methods(self, population):
         """Name, model file, runs and options of each compensator."""
         alone = ["sweep", "ramp", "warm"]
-        for name, text in [
-                ("cubic", 'kind = "polynomial"\n'),
-                ("spline", 'kind = "spline"\n'),
-                ("steady_cubic", 'kind = "polynomial"\n' + STEADY),
-                ("steady_spline", 'kind = "spline"\n' + STEADY)]:
-            (self.out / f"{name}.toml").write_text(text)
+        for name, kind in [("cubic", "polynomial"), ("spline", "spline")]:
+            (self.out / f"{name}.toml").write_text(f'kind = "{kind}"\n')
         model = self.out / f"adapted_{self.name}.toml"
         model.write_text(
             (SCENARIOS / "population/adapted.toml").read_text().replace(
@@ -177,8 +173,6 @@ class Study(foreign_units.Study):
         for run in self.runs():
             if run.startswith(("soaks_", "planned_")):
                 yield f"adapted, {run}", model, [run]
-        for name in ["steady_cubic", "steady_spline"]:
-            yield f"{name[7:]}, a sweep", self.out / f"{name}.toml", ["sweep"]
         for name in ["cubic", "spline"]:
             yield f"{name}, three runs", self.out / f"{name}.toml", alone
 
@@ -260,9 +254,6 @@ class Study(foreign_units.Study):
                             np.sqrt(np.mean(error ** 2)),
                             np.sqrt(np.mean(sigma ** 2))]
         return found
-
-
-STEADY = "[rows]\nsteady_K_per_min = 0.05\n"
 
 
 def curve_of(stored, T):

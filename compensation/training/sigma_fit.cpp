@@ -180,18 +180,17 @@ int group_count_of(const ResidualRows& rows) {
   return groups_among(rows, RowMask::Constant(rows.size(), true));
 }
 
-// Residuals of one run or device do not tell how the next one differs: they can
-// only show that the sigma of a fit is too small.
-void calibrate_on_one(BiasSigma& sigma, const ResidualRows& rows) {
-  if (sigma.source != SigmaSource::kCovariance) return;
-  BiasSigma shown = sigma;
-  calibrate(shown, rows);
-  shown.factor = std::max(shown.factor, 1.0);
-  shown.calibration.method =
-      "one group, which can widen sigma and not narrow it: " +
-      shown.calibration.method;
-  sigma = std::move(shown);
+// Whether no run but one has told it: the soaks of a run share its turn-on
+// offset and slow noise, and so they do not tell how the next run differs.
+bool is_of_one_run(const BiasSigma& sigma) {
+  return sigma.source == SigmaSource::kCovariance &&
+         sigma.calibration.by == kLeftOutGroup;
 }
+
+constexpr const char* kOneRun =
+    "one leg of one run does not tell how the next run differs, in turn-on "
+    "offset, slow noise or lag: expected two runs or more, or two held-out "
+    "ones";
 
 void calibrate_on_held_out(const FittedCompensator& trained,
                            const SigmaTask& task,
@@ -201,8 +200,6 @@ void calibrate_on_held_out(const FittedCompensator& trained,
   const int groups = group_count_of(rows);
   if (groups == 0) {
     why_none += "; held-out runs have no row within the temperatures";
-  } else if (groups == 1 && sigma) {
-    calibrate_on_one(*sigma, rows);
   } else if (groups == 1) {
     why_none =
         "one held-out run does not tell how runs differ: expected two or more, "
@@ -241,8 +238,6 @@ void calibrate_on_left_out(const FittedCompensator& trained,
     } catch (const UndeterminedFit& error) {
       why_none += std::string("; ") + error.what();
     }
-  if (sigma && sigma->source == SigmaSource::kCovariance)
-    calibrate_terms(*sigma, residuals_of(trained, task.runs, task));
 }
 
 template <class Count>
@@ -272,9 +267,13 @@ std::optional<BiasSigma> fit_bias_sigma(const FittedCompensator& trained,
   }
   if (task.held_out_runs.count > 0)
     calibrate_on_held_out(trained, task, sigma, why_none);
-  const bool may_leave_out = task.held_out_runs.count == 0 || !sigma;
-  if (may_leave_out && population_behind(trained, task.kind) == nullptr)
+  if ((!sigma || is_of_one_run(*sigma)) &&
+      population_behind(trained, task.kind) == nullptr)
     calibrate_on_left_out(trained, task, sigma, why_none);
+  if (sigma && is_of_one_run(*sigma)) {
+    sigma.reset();
+    if (why_none.empty()) why_none = kOneRun;
+  }
   if (sigma) {
     sigma->growth = growth_of(trained, task.kind, *sigma);
     why_none.clear();

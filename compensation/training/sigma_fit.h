@@ -37,8 +37,8 @@ bool may_state_sigma(const FitSpec& kind);
 ///   polynomial or a spline always, of others where cross-validation was asked
 ///   for.
 /// - Of a polynomial and a spline of rows without such groups s(T) is that of
-///   left_out_sigma(), with a_on and a_rate of the training rows. It is also
-///   what held-out runs calibrate; one such group can only widen it.
+///   left_out_sigma(), where two held-out groups or more calibrate it. One run
+///   does not tell how the next one differs: its soaks share a turn-on offset.
 /// The runs concerned are visited once more.
 std::optional<BiasSigma> fit_bias_sigma(const FittedCompensator& trained,
                                         const SigmaTask& task,

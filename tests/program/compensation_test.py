@@ -74,7 +74,8 @@ class Compensation(ProgramTest):
         self.assertSameBytes("alone.json", "free.json")
 
     def test_compensate_copies_the_recording_and_adds_rate_and_sigma(self):
-        self.train("cubic", "cubic.toml")
+        self.train("cubic", "cubic.toml", "--held-out", "held_out.h5",
+                   "--held-out", "test.h5")
         self.ok("compensate", "cubic.json", "test.h5", "-o", "out.h5")
         self.ok("compensate", "cubic.json", "test.h5", "-o", "again.h5")
         self.assertSameBytes("out.h5", "again.h5")

@@ -246,6 +246,8 @@ class Formats(ProgramTest):
 
     def test_the_recording_holds_what_the_page_lists(self):
         self.cubic_of_a_ramp("run")
+        self.ok("run", "run.toml", "--seed", 4, "-o", "more.h5")
+        self.train_on("run.h5", "more.h5")
         self.ok("compensate", "c.json", "run.h5", "-o", "out.h5")
         documented = rows(page("recording").split("\n## ")[0])
         with h5py.File(self.dir / "out.h5") as file:
@@ -272,11 +274,15 @@ class Formats(ProgramTest):
                     if rest.startswith("only with")}
         self.assertEqual(optional, {"scale_factor", "population", "sigma",
                                     "sigma_not_known"})
-        for text, left_out in [(CUBIC, {"scale_factor", "population"}),
-                               (CUBIC + "[scale_factor]\n", {"population"})]:
-            answer = self.train_on("run.h5", model=text)
-            self.assertEqual(set(answer), set(documented) - left_out
-                             - {"sigma_not_known"})
+        self.ok("run", "run.toml", "--seed", 4, "-o", "more.h5")
+        for text, runs, left_out in [
+                (CUBIC, ["run.h5"], {"scale_factor", "population", "sigma"}),
+                (CUBIC, ["run.h5", "more.h5"],
+                 {"scale_factor", "population", "sigma_not_known"}),
+                (CUBIC + "[scale_factor]\n", ["run.h5", "more.h5"],
+                 {"population", "sigma_not_known"})]:
+            answer = self.train_on(*runs, model=text)
+            self.assertEqual(set(answer), set(documented) - left_out)
             self.assertEqual(set(answer["training"]), set(rows(training)))
 
     def test_parameters_of_every_kind_are_listed(self):

@@ -86,7 +86,7 @@ TEST(TrainedSigma, OfALineIsTheSpreadOfSoaksWhenNothingIsHeldOut) {
 
 TEST(TrainedSigma, IsWiderWhereTheFitIsLessSure) {
   const FittedCompensator c =
-      train(line_spec(), soak_runs(1, 20), {}, 1).compensator;
+      train(line_spec(), soak_runs(1, 20), soak_runs(2, 21), 1).compensator;
   ASSERT_TRUE(c.sigma);
   EXPECT_EQ(c.sigma->source, SigmaSource::kCovariance);
   const ArrayXd& T = c.sigma->curve.temperatures;
@@ -96,7 +96,7 @@ TEST(TrainedSigma, IsWiderWhereTheFitIsLessSure) {
     EXPECT_GT(c.sigma->curve_at(highest + d), c.sigma->curve_at(highest));
   }
   // A bias of 0.02 deg/s/K that is clamped leaves 1 deg/s at 50 K.
-  EXPECT_GT(c.sigma->curve_at(highest + 50.0), 0.99);
+  EXPECT_GT(c.sigma->at(highest + 50.0, 0.0, 0.0), 0.99);
 }
 
 TEST(TrainedSigma, HeldOutRunsCalibrateIt) {
@@ -137,19 +137,26 @@ TEST(TrainedSigma, OfATableIsNotKnownFromOneHeldOutRun) {
             Names{"no sigma: " + one.compensator.sigma_not_known});
 }
 
-TEST(TrainedSigma, OfALineIsNotNarrowedByOneHeldOutRun) {
-  std::vector<TrainingRun> quiet = soak_runs(1, 21);
-  // 0.5 + 0.02 T without an offset in any soak: nothing is missed.
-  Recording& run = quiet[0].recording;
-  const std::vector<double> T = column_values(run, "temperature");
-  for (Column& column : run.columns)
-    for (std::size_t k = 0; column.name == "rate" && k < T.size(); ++k)
-      column.values[k] = 0.5 + 0.02 * T[k];
-  const FittedCompensator c =
-      train(line_spec(), soak_runs(1, 20), quiet, 1).compensator;
-  ASSERT_TRUE(c.sigma);
-  EXPECT_EQ(c.sigma->factor, 1.0);
-  EXPECT_EQ(c.sigma->calibration.groups, 1U);
+// Soaks of one run share its turn-on offset, and so does the curve.
+TEST(TrainedSigma, OfALineIsNotKnownFromOneRun) {
+  const FittedCompensator alone =
+      train(line_spec(), soak_runs(1, 20), {}, 1).compensator;
+  EXPECT_FALSE(alone.sigma);
+  EXPECT_EQ(alone.sigma_not_known,
+            "one leg of one run does not tell how the next run differs, in "
+            "turn-on offset, slow noise or lag: expected two runs or more, or "
+            "two held-out ones");
+  const FittedCompensator one =
+      train(line_spec(), soak_runs(1, 20), soak_runs(1, 21), 1).compensator;
+  EXPECT_FALSE(one.sigma);
+  EXPECT_EQ(one.sigma_not_known,
+            "one held-out run does not tell how runs differ: expected two or "
+            "more, or one of several power cycles or legs");
+  const FittedCompensator two =
+      train(line_spec(), soak_runs(1, 20), soak_runs(2, 21), 1).compensator;
+  ASSERT_TRUE(two.sigma);
+  EXPECT_EQ(two.sigma->calibration.groups, 2U);
+  EXPECT_EQ(two.sigma_not_known, "");
 }
 
 TEST(TrainedSigma, ATableHasOneFromRowsItHasNotSeen) {
