@@ -142,9 +142,10 @@ class Validations(ProgramTest):
         self.write("model.toml", CUBIC)
         self.run_scenario("train", text=ramp())
         self.run_scenario("held", text=ramp(seed=8))
+        self.run_scenario("held_2", text=ramp(seed=9))
         self.run_scenario("check", text=ramp(seed=5))
-        self.ok("train", "train.h5", "--held-out", "held.h5", "--model",
-                "model.toml", "-o", "c.json")
+        self.ok("train", "train.h5", "--held-out", "held.h5", "--held-out",
+                "held_2.h5", "--model", "model.toml", "-o", "c.json")
         self.beamgyro("validate", "c.json", "check.h5", "--spec",
                       ROOT / "specs/uav.toml", "--json", "v.json")
         figure = plots.plot(self.dir / "v.json")
