@@ -141,11 +141,11 @@ herr_t read_strictly(DrivenFile& from, H5FD_mem_t kind, haddr_t place,
   };
   bool is_sound = false;
   const herr_t status = guarded([&] {
-    is_sound =
-        fill(place, bytes) && is_sound_heap(bytes) &&
-        is_sound_chunk_node(bytes) &&
-        (!is_tree(bytes) || is_sound_tree(bytes, from.size, fill)) &&
-        from.headers.are_sound(place, bytes, kind == H5FD_MEM_OHDR, fill);
+    is_sound = fill(place, bytes) && is_sound_heap(bytes) &&
+               is_sound_chunk_node(bytes) &&
+               (!is_tree(bytes) || is_sound_tree(bytes, from.size, fill)) &&
+               from.headers.are_sound(place, bytes, kind == H5FD_MEM_OHDR,
+                                      from.size, fill);
   });
   if (status < 0 || !is_sound) return -1;
   if (!is_global_heap(bytes)) return 0;

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "dataset/netcdf/hdf5_bytes.h"
-#include "dataset/netcdf/hdf5_datatype.h"
+#include "dataset/netcdf/hdf5_dense.h"
+#include "dataset/netcdf/hdf5_message.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -18,9 +19,6 @@ using Bytes = std::span<const std::byte>;
 
 constexpr std::string_view kHeader = "OHDR", kContinuation = "OCHK";
 constexpr std::size_t kSignature = 4, kSum = 4;
-constexpr std::uint64_t kTypeKind = 0x03, kAttributeKind = 0x0c,
-                        kContinuationKind = 0x10;
-constexpr std::uint64_t kShared = 0x02;      // flag of a message
 constexpr std::size_t kMostBytes = 1 << 24;  // of messages in one piece
 constexpr std::size_t kMostContinuations = 1000;
 
@@ -31,40 +29,16 @@ struct Messages {
   std::size_t head_bytes = 4;  // of each message
 };
 
-struct Message {
-  std::uint64_t kind, flags;
-  Bytes body;
-};
-
-/// The parts of an attribute end within its message, and its type within its
-/// part.
-bool is_sound_attribute(const Message& message) {
-  constexpr std::size_t kParts = 8, kNameSize = 2, kTypeSize = 4,
-                        kShapeSize = 6;
-  constexpr std::uint64_t kSharedType = 0x01;  // flag of an attribute
-  const Bytes body = message.body;
-  if ((message.flags & kShared) != 0 || body.size() < kParts) return false;
-  const std::uint64_t version = little_number(body, 0, 1);
-  const auto room_of = [&](std::size_t part) {
-    const std::uint64_t size = little_number(body, part, 2);
-    return version == 1 ? (size + 7) / 8 * 8 : size;
-  };
-  const std::uint64_t type =
-      (version == 3 ? kParts + 1 : kParts) + room_of(kNameSize);
-  if (type + room_of(kTypeSize) + room_of(kShapeSize) > body.size())
-    return false;
-  const bool is_shared =
-      version > 1 && (little_number(body, 1, 1) & kSharedType) != 0;
-  return is_shared || is_sound_datatype(body.subspan(
-                          type, little_number(body, kTypeSize, 2)));
-}
-
-/// Whether HDF5 finds all that it looks for within a message.
-bool is_sound_message(const Message& message) {
-  if (message.kind == kAttributeKind) return is_sound_attribute(message);
-  if (message.kind == kTypeKind && (message.flags & kShared) == 0)
-    return is_sound_datatype(message.body);
-  return true;
+/// A message is sound, and so is what the heap has to which it leads.
+bool is_sound_here(const HeaderMessage& message, std::uint64_t file_size,
+                   const ObjectHeaders::Read& read) {
+  if (!is_sound_message(message)) return false;
+  const std::optional<DenseStorage> storage = dense_storage(message);
+  return !storage ||
+         is_sound_storage(
+             *storage,
+             message.kind == kLinksMessage ? kLinkMessage : kAttributeMessage,
+             file_size, read);
 }
 
 /// The messages of a header; nothing for one that is cut off.
@@ -85,7 +59,7 @@ std::optional<Messages> messages_of_header(std::uint64_t place, Bytes bytes) {
 }
 
 std::optional<Messages> continued(const Messages& from,
-                                  const Message& message) {
+                                  const HeaderMessage& message) {
   constexpr std::size_t kBytes = 16;
   if (message.body.size() < kBytes) return std::nullopt;
   const std::size_t before = from.is_old ? 0 : kSignature;
@@ -98,24 +72,24 @@ std::optional<Messages> continued(const Messages& from,
 
 /// The message at the beginning of `bytes`, which become what follows it;
 /// nothing where they have no room for it.
-std::optional<Message> take_message(Bytes& bytes, const Messages& from) {
+std::optional<HeaderMessage> take_message(Bytes& bytes, const Messages& from) {
   const std::size_t kind_bytes = from.is_old ? 2 : 1;
   if (bytes.size() < from.head_bytes) return std::nullopt;
   const std::uint64_t size = little_number(bytes, kind_bytes, 2);
-  const Message message{little_number(bytes, 0, kind_bytes),
-                        little_number(bytes, kind_bytes + 2, 1),
-                        {}};
+  const HeaderMessage message{little_number(bytes, 0, kind_bytes),
+                              little_number(bytes, kind_bytes + 2, 1),
+                              {}};
   bytes = bytes.subspan(from.head_bytes);
   if (size > bytes.size()) return std::nullopt;
   const Bytes body = bytes.first(size);
   bytes = bytes.subspan(size);
-  return Message{message.kind, message.flags, body};
+  return HeaderMessage{message.kind, message.flags, body};
 }
 
 }  // namespace
 
 bool ObjectHeaders::are_sound(std::uint64_t place, Bytes bytes, bool is_header,
-                              const Read& read) {
+                              std::uint64_t file_size, const Read& read) {
   const bool is_new = starts_with(bytes, kHeader);
   const bool is_old = is_header && !bytes.empty() && bytes[0] == std::byte{1} &&
                       !parts_.contains(place);
@@ -135,10 +109,10 @@ bool ObjectHeaders::are_sound(std::uint64_t place, Bytes bytes, bool is_header,
     if (!read(from.place, content)) return false;
     Bytes rest = content;
     while (rest.size() >= from.head_bytes) {
-      const std::optional<Message> message = take_message(rest, from);
+      const std::optional<HeaderMessage> message = take_message(rest, from);
       if (!message) break;  // a gap at the end, or what HDF5 refuses
-      if (!is_sound_message(*message)) return false;
-      if (message->kind != kContinuationKind) continue;
+      if (!is_sound_here(*message, file_size, read)) return false;
+      if (message->kind != kContinuationMessage) continue;
       const std::optional<Messages> next = continued(from, *message);
       if (!next) return false;
       parts_.insert(little_number(message->body, 0, 8));

@@ -10,8 +10,8 @@
 namespace beamgyro::internal {
 
 /// The headers of the objects of one file, before HDF5 1.10 sees them. It takes
-/// for granted that the parts of an attribute end within its message, and reads
-/// what lies behind where they do not.
+/// for granted that the parts of a message end within it, and reads what lies
+/// behind where they do not.
 class ObjectHeaders {
  public:
   /// Fills bytes from a place of the file, or returns false.
@@ -19,11 +19,11 @@ class ObjectHeaders {
       std::function<bool(std::uint64_t place, std::span<std::byte> bytes)>;
 
   /// Returns whether bytes that stand at a place are anything else than a
-  /// header, or a header all of whose attributes are sound, those of its
-  /// continuations included. `is_header` tells that HDF5 reads a header or a
-  /// continuation.
+  /// header, or a header all of whose messages are sound: those of its
+  /// continuations and the links and attributes that it has in a heap included.
+  /// `is_header` tells that HDF5 reads a header or a continuation.
   bool are_sound(std::uint64_t place, std::span<const std::byte> bytes,
-                 bool is_header, const Read& read);
+                 bool is_header, std::uint64_t file_size, const Read& read);
 
  private:
   // Where continuations, and what is left of headers, begin that were looked

@@ -190,6 +190,7 @@ std::string meta_text(hid_t file, const std::string& name) {
   const H5Id type(H5Dget_type(dataset), H5Tclose, "read a type");
   const H5Id space(H5Dget_space(dataset), H5Sclose, "read a size");
   const std::uint64_t room = H5Dget_storage_size(dataset);
+  check_chunks_of_row(dataset, "meta/" + name, 0);
   return read_string(type, space, room, "/meta/" + name, [&](void* text) {
     return H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text);
   });

@@ -11,6 +11,7 @@
 
 #include "dataset/files/open_file.h"
 #include "dataset/netcdf/hdf5_id.h"
+#include "dataset/netcdf/hdf5_storage.h"
 #include "dataset/recording/recording.h"
 
 namespace beamgyro::internal {
@@ -43,6 +44,7 @@ std::vector<Value> read_values(hid_t file, const std::string& name,
   if (length != 0 && found != length)
     throw Hdf5Error(name + " has " + std::to_string(found) +
                     " values; expected " + std::to_string(length));
+  check_chunks_of_row(variable, name, 0);
   std::vector<Value> values(found);
   check_hdf5(H5Dread(variable, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT,
                      values.data()),

@@ -31,6 +31,14 @@ constexpr std::uint64_t kMostInflated = 1032;  // deflate packs no tighter
                   name, claimed, there));
 }
 
+[[noreturn]] void too_much(const std::string& what, std::uint64_t claimed,
+                           std::uint64_t room) {
+  throw Hdf5Error(fmt::format(
+      "{} takes {} bytes of memory, more than the {} bytes that a file of its "
+      "size may ask for",
+      what, claimed, room));
+}
+
 /// The product, or the largest number when it is larger.
 std::uint64_t product(std::uint64_t a, std::uint64_t b) {
   std::uint64_t result = 0;
@@ -39,8 +47,7 @@ std::uint64_t product(std::uint64_t a, std::uint64_t b) {
              : result;
 }
 
-std::uint64_t size_of_file(hid_t variable) {
-  const H5Id file(H5Iget_file_id(variable), H5Fclose, "find the file");
+std::uint64_t size_of_file(hid_t file) {
   hsize_t size = 0;
   check_hdf5(H5Fget_filesize(file, &size), "size the file");
   return size;
@@ -105,7 +112,8 @@ void check_inflated(hid_t variable, const std::string& name,
 /// and large enough.
 void check_chunks(hid_t variable, hid_t properties, const std::string& name,
                   const std::vector<hsize_t>& lengths, std::size_t width,
-                  std::uint64_t stored) {
+                  std::uint64_t stored, std::uint64_t room) {
+  constexpr std::uint64_t kShare = 8;  // HDF5 holds some copies of a chunk
   std::vector<hsize_t> chunk(lengths.size());
   const int rank = static_cast<int>(lengths.size());
   if (H5Pget_chunk(properties, rank, chunk.data()) != rank)
@@ -117,6 +125,8 @@ void check_chunks(hid_t variable, hid_t properties, const std::string& name,
         product(chunks, lengths[i] / chunk[i] + (lengths[i] % chunk[i] != 0));
     size = product(size, chunk[i]);
   }
+  if (size > room / kShare)
+    too_much(fmt::format("a chunk of {}", name), size, room / kShare);
   const std::uint64_t claimed = product(chunks, size);
   const bool deflated =
       filters_of(properties, name).contains(H5Z_FILTER_DEFLATE);
@@ -126,7 +136,6 @@ void check_chunks(hid_t variable, hid_t properties, const std::string& name,
   hsize_t there = 0;
   check_hdf5(H5Dget_num_chunks(variable, space, &there), "size " + name);
   if (there != chunks) missing(name);
-  if (rank == 1) check_chunks_of_row(variable, name, 0);
 }
 
 }  // namespace
@@ -146,6 +155,12 @@ void check_chunks_of_row(hid_t variable, const std::string& name, hsize_t row) {
   std::uint64_t size = product(H5Tget_size(type), chunk[0]);
   if (rank == 2) size = product(size, chunk[1]);
   const std::size_t along = rank == 2 ? 1 : 0;
+  if (rank == 1) {
+    const H5Id file(H5Iget_file_id(variable), H5Fclose, "find the file");
+    const std::uint64_t all = product(H5Tget_size(type), length[0]);
+    if (const std::uint64_t room = room_for_values(file); all > room)
+      too_much(name, all, room);
+  }
   const Filters filters = filters_of(properties, name);
   std::array<hsize_t, 2> place{};
   if (rank == 2) place[0] = row - row % chunk[0];
@@ -206,13 +221,16 @@ void check_storage(hid_t variable, const std::string& name) {
   if (external > 0)
     throw Hdf5Error(fmt::format(
         "the values of {} are in another file; expected them in this", name));
-  const std::uint64_t file = size_of_file(variable);
+  const H5Id its_file(H5Iget_file_id(variable), H5Fclose, "find the file");
+  const std::uint64_t file = size_of_file(its_file);
   const std::uint64_t stored = stored_size(variable, name);
   if (stored > file) too_large(name, stored, file);
   if (claimed == 0) return;
+  const std::uint64_t room = room_for_values(its_file);
   switch (layout) {
     case H5D_CHUNKED:
-      return check_chunks(variable, properties, name, lengths, width, stored);
+      return check_chunks(variable, properties, name, lengths, width, stored,
+                          room);
     case H5D_CONTIGUOUS: {
       const haddr_t place = H5Dget_offset(variable);
       if (place == HADDR_UNDEF) missing(name);
@@ -226,6 +244,11 @@ void check_storage(hid_t variable, const std::string& name) {
     default:
       throw Hdf5Error(fmt::format("{} is stored in an unknown way", name));
   }
+}
+
+std::uint64_t room_for_values(hid_t file) {
+  constexpr std::uint64_t kInflated = 400, kAlways = 64u << 20;
+  return kAlways + kInflated * size_of_file(file);
 }
 
 }  // namespace beamgyro::internal

@@ -13,8 +13,9 @@ namespace {
 
 // The format is "Version 2 B-trees" of the HDF5 File Format Specification 3.0,
 // with addresses and lengths of 8 bytes.
-constexpr std::string_view kTreeStart = "BTHD", kInnerStart = "BTIN";
-constexpr std::size_t kHeaderBytes = 38, kAddressBytes = 8;
+constexpr std::string_view kTreeStart = "BTHD", kInnerStart = "BTIN",
+                           kLeafStart = "BTLF";
+constexpr std::size_t kAddressBytes = 8;
 constexpr std::size_t kNodeHead = 6;               // signature, version, kind
 constexpr std::size_t kNodeFrame = kNodeHead + 4;  // and a checksum
 constexpr std::uint64_t kDeepest = 8;
@@ -46,8 +47,11 @@ struct Level {
   std::uint64_t most_below = 0;  // records of the node and all its children
 };
 
+using VisitRecord = std::function<bool(std::span<const std::byte> record)>;
+
 struct Tree {
   std::uint64_t node_size, record_size, file_size;
+  const VisitRecord& is_sound_record;
   std::uint64_t count_bytes = 0;  // of the number of records of a child
   std::vector<Level> levels = {};
   std::uint64_t nodes = 0;  // that were met
@@ -86,9 +90,16 @@ bool is_sound_node(Tree& tree, std::uint64_t depth, std::uint64_t place,
   if (records > level.most_records ||
       ++tree.nodes > tree.file_size / tree.node_size)
     return false;
-  if (depth == 0) return true;
+  if (depth == 0 && !tree.is_sound_record) return true;
   std::vector<std::byte> node(tree.node_size);
-  if (!read(place, node) || !starts_with(node, kInnerStart)) return false;
+  if (!read(place, node) ||
+      !starts_with(node, depth == 0 ? kLeafStart : kInnerStart))
+    return false;
+  for (std::uint64_t k = 0; tree.is_sound_record && k < records; ++k)
+    if (!tree.is_sound_record(std::span(node).subspan(
+            kNodeHead + k * tree.record_size, tree.record_size)))
+      return false;
+  if (depth == 0) return true;
   std::size_t pointer = kNodeHead + records * tree.record_size;
   for (std::uint64_t k = 0; k <= records; ++k, pointer += level.pointer) {
     const std::uint64_t child = little_number(node, pointer, kAddressBytes);
@@ -134,18 +145,19 @@ bool is_tree(std::span<const std::byte> header) {
   return starts_with(header, kTreeStart);
 }
 
-bool is_sound_tree(
-    std::span<const std::byte> header, std::uint64_t file_size,
-    const std::function<bool(std::uint64_t place, std::span<std::byte> bytes)>&
-        read) {
-  if (header.size() != kHeaderBytes) return false;
-  const std::uint64_t kind = little_number(header, 5, 1),
+bool is_sound_tree(std::span<const std::byte> header, std::uint64_t file_size,
+                   const std::function<bool(std::uint64_t place,
+                                            std::span<std::byte> bytes)>& read,
+                   const VisitRecord& is_sound_record) {
+  if (header.size() != kTreeHeaderBytes) return false;
+  const std::uint64_t kind = little_number(header, kTreeKind, 1),
                       depth = little_number(header, 12, 2);
   const std::uint64_t root = little_number(header, 16, 8);
   const std::uint64_t records = little_number(header, 24, 2);
   Tree tree{.node_size = little_number(header, 6, 4),
             .record_size = little_number(header, 10, 2),
-            .file_size = file_size};
+            .file_size = file_size,
+            .is_sound_record = is_sound_record};
   return tree.node_size <= file_size && tree.record_size > 0 &&
          tree.record_size == record_bytes(kind) && depth <= kDeepest &&
          add_levels(tree, depth) &&

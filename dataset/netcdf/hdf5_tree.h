@@ -14,6 +14,9 @@ namespace beamgyro::internal {
 /// to read it, and finds two then. True for other bytes.
 bool is_sound_chunk_node(std::span<const std::byte> node);
 
+// The header of a B-tree of version 2, and where it has the kind of records.
+inline constexpr std::size_t kTreeHeaderBytes = 38, kTreeKind = 5;
+
 /// Returns whether these are the first bytes of a B-tree of version 2.
 bool is_tree(std::span<const std::byte> header);
 
@@ -23,9 +26,12 @@ bool is_tree(std::span<const std::byte> header);
 /// - Its records are links or attributes, and of their size.
 /// - Its nodes fit into the file, all of them together.
 /// - No node claims more records than it has room for.
+/// - `is_sound_record`, if given, is true of each record.
 /// `read` fills bytes from a place of the file, or returns false.
 bool is_sound_tree(std::span<const std::byte> header, std::uint64_t file_size,
                    const std::function<bool(std::uint64_t place,
-                                            std::span<std::byte> bytes)>& read);
+                                            std::span<std::byte> bytes)>& read,
+                   const std::function<bool(std::span<const std::byte> record)>&
+                       is_sound_record = {});
 
 }  // namespace beamgyro::internal

@@ -16,22 +16,13 @@
 #include "dataset/netcdf/hdf5_driver.h"
 #include "dataset/netcdf/hdf5_id.h"
 #include "dataset/netcdf/hdf5_read.h"
-#include "dataset/netcdf/recording_reader.h"
+#include "dataset/netcdf/hdf5_storage.h"
 #include "dataset/recording/recording_defect.h"
 #include "dataset/recording/signals.h"
 #include "dataset/recording/units.h"
 
 namespace beamgyro::internal {
 namespace {
-
-/// Returns the memory that the values of a file may take [bytes]. Deflate
-/// compresses signals with noise to a tenth, and constants to a thousandth.
-std::uint64_t room_for_values(hid_t file) {
-  constexpr std::uint64_t kInflated = 400, kAlways = 256u << 20;
-  hsize_t size = 0;
-  check_hdf5(H5Fget_filesize(file, &size), "size the file");
-  return kAlways + kInflated * size;
-}
 
 std::size_t number_of_samples(hid_t file,
                               const std::vector<std::string>& names) {

@@ -117,7 +117,11 @@ struct ProcessOptions {
   std::size_t memory = std::size_t{2} << 30;  ///< [bytes]; 0: no limit
   /// The program `beamgyro`, which loads shared libraries and isolates commands
   /// (docs/reference/plugins.md) in processes of their own. Without it commands
-  /// are not isolated.
+  /// are not isolated, and nothing keeps them: a command whose caller is killed
+  /// by SIGKILL runs on, and so does what it starts and leaves behind. The
+  /// limit of memory then holds for each of its processes alone. A keeper needs
+  /// a program: a process with threads, as the caller may be, must not do the
+  /// work of one in a fork of itself.
   std::filesystem::path program = {};
   /// Files and folders that it may read beside those of the system and the
   /// scripts that a command names.

@@ -55,6 +55,10 @@ class Compensator(Wrapper):
         require_isolation: whether a program that cannot be isolated is
             refused.
 
+    A command is isolated, and ends with this process however that ends, where
+    the program `beamgyro` is beside the package or on PATH. Without it a
+    command runs on when this process is killed by SIGKILL.
+
     Raises:
         ValueError: `source` is none of these, or cannot be read.
     """

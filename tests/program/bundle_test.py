@@ -171,14 +171,15 @@ class Bundles(Qualified):
                          "an input and not in the bundle; it was not read\n")
 
     def renewed(self, name, pattern, new):
-        """Alters an input of the bundle, and its hash."""
+        """Alters an input of the bundle, its size and its hash."""
         self.change(f"bundle/{name}", pattern, new)
-        digest = hashlib.sha256(self.text(f"bundle/{name}").encode())
+        data = self.text(f"bundle/{name}").encode()
 
         def change(said):
             for file in said["inputs"]:
                 if file["file"] == name:
-                    file["sha256"] = digest.hexdigest()
+                    file["bytes"] = len(data)
+                    file["sha256"] = hashlib.sha256(data).hexdigest()
         self.altered(change)
 
     def test_no_file_elsewhere_is_opened(self):
@@ -240,7 +241,7 @@ class Bundles(Qualified):
         for change, says in [
                 (whole[:50], "bundle.json"),
                 (whole.replace("beamgyro-bundle", "a cake"), "filetype"),
-                (whole.replace('"format_version": 1', '"format_version": 2'),
+                (whole.replace('"format_version": 2', '"format_version": 1'),
                  "format_version"),
                 (whole.replace('"request"', '"demand"'), "request")]:
             self.write("bundle/bundle.json", change)

@@ -10,7 +10,7 @@ import unittest
 
 import numpy as np
 
-from program import (IDENTITY, LONELY_USER, PROGRAM, ROOT, ProgramTest, ramp,
+from program import (IDENTITY, PROGRAM, ROOT, ProgramTest, become_lonely, ramp,
                      said, without_landlock)
 
 # Answers the true rate of a recording, or the rate as it is.
@@ -31,7 +31,8 @@ for line in sys.stdin:
     values = line.split(",")
     print(known.get(float(values[0]), float(values[names.index("rate")])))
 """
-# It finds the recording in the command lines of all processes.
+# It finds the recording in the command lines of all processes, and passes over
+# the recordings of other tests.
 BY_COMMAND_LINE = """\
 import glob, os
 def recordings():
@@ -39,7 +40,8 @@ def recordings():
         try:
             words = open(place + "/cmdline", "rb").read().split(b"\\0")
             yield from (os.fsdecode(word) for word in words
-                        if word.endswith(b".h5"))
+                        if word.startswith(os.fsencode(os.getcwd() + "/"))
+                        and word.endswith(b".h5"))
         except OSError:
             pass
 """ + FORGERY
@@ -54,15 +56,8 @@ def landlock_version():
                 ".syscall(444, None, 0, 1))").strip()
 
 
-def as_user():
-    """What a process of root does first that works as another user."""
-    if os.geteuid() == 0:
-        os.setgid(LONELY_USER)
-        os.setuid(LONELY_USER)
-
-
 def as_user_without_landlock():
-    as_user()
+    become_lonely()
     without_landlock()
 
 
@@ -94,7 +89,7 @@ class Isolation(ProgramTest):
 
     def test_forgeries_see_nothing(self):
         for forgery in "by_command_line.py", "by_path.py test.h5":
-            for first in None, as_user:
+            for first in None, become_lonely:
                 self.assertFalse(self.sees_truth(forgery, preexec_fn=first),
                                  forgery)
 
@@ -103,6 +98,14 @@ class Isolation(ProgramTest):
             self.assertTrue(self.sees_truth("by_path.py", preexec_fn=first))
             self.assertFalse(
                 self.sees_truth("by_command_line.py", preexec_fn=first))
+            # It finds the recording where a command line names it.
+            with subprocess.Popen(["tail", "-f", self.recording],
+                                  stdout=subprocess.DEVNULL) as other:
+                try:
+                    self.assertTrue(self.sees_truth("by_command_line.py",
+                                                    preexec_fn=first))
+                finally:
+                    other.kill()
 
     def test_a_result_says_what_could_be_read(self):
         said_, answer = self.validated(f"cmd:{SYSTEM_PYTHON} same.py", "test.h5")

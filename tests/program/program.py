@@ -34,7 +34,6 @@ SHIPPED_SCENARIOS = sorted(
     path for pattern in ("*.toml", "qualification/*.toml")
     for path in SCENARIOS.glob(pattern) if path.name != "qualification.toml")
 
-LONELY_USER = 54321  # of no one else
 PATIENCE = 300  # [s], after which something hangs; no promise of speed
 
 SCENARIO = """\
@@ -95,6 +94,15 @@ def processes(word):
         except OSError:
             pass
     return found
+
+
+def become_lonely():
+    """What a process of root does first that must be the only one of its user:
+    it becomes a user of its own number, whom no other process has."""
+    if os.geteuid() == 0:
+        user = 1_000_000_000 + os.getpid()
+        os.setgid(user)
+        os.setuid(user)
 
 
 def class_folder(case, prefix=""):
@@ -272,9 +280,7 @@ class ProgramTest(unittest.TestCase):
 
         def restrict():
             resource.setrlimit(resource.RLIMIT_NPROC, (1, 1))
-            if os.geteuid() == 0:  # which no limit holds
-                os.setgid(LONELY_USER)
-                os.setuid(LONELY_USER)
+            become_lonely()  # no limit holds root
 
         return self.ok(*arguments, program=program, preexec_fn=restrict)
 

@@ -8,6 +8,7 @@ from program import PROGRAM, ProgramTest, limit, limits, said
 
 HUGE = 20 << 30  # bytes, which take none of the disk
 LONG = 15_000_000  # letters, within what a file of JSON may have
+FEW_SECONDS = limit(resource.RLIMIT_CPU, 3)  # of processor time
 MEMORY = limit(resource.RLIMIT_AS, 2 << 30)
 
 
@@ -62,9 +63,12 @@ class Sizes(ProgramTest):
         self.write("limits.toml", limits(bias_pp_deg_per_s=9))
         self.ended("validate", "c.json", "run.h5", "--spec", "limits.toml",
                    "--bundle", "b", allowed=(0, 3))
-        self.make_huge("b/report.txt")
-        answer = self.ended("validate", "--check", "b", allowed=(1,))
-        self.assertSays(answer.stdout + answer.stderr, "report.txt")
+        for name in ("report.txt", "inputs/compensator/c.json"):
+            self.assertTrue((self.dir / "b" / name).exists())
+            self.make_huge(f"b/{name}")
+            answer = self.ended("validate", "--check", "b", allowed=(1,),
+                                preexec_fn=FEW_SECONDS)
+            self.assertSays(answer.stdout + answer.stderr, name)
         self.make_huge("b/bundle.json")
         self.refused("validate", "--check", "b",
                      says="expected that of a bundle")

@@ -95,25 +95,19 @@ class UnfinishedBundle {
   std::vector<std::string> names_;
 };
 
-bool has_bytes(const fs::path& directory, const std::string& name,
-               const std::string& digits) {
+// What is larger than it claims is not hashed: a file of a few bytes on the
+// disk may have holes of terabytes.
+bool has_bytes(const fs::path& directory, const ListedFile& file) {
   try {
-    return sha256_of_set_file(directory, name) == digits;
+    return open_set_file(directory, file.name, O_RDONLY).size() == file.bytes &&
+           sha256_of_set_file(directory, file.name) == file.sha256;
   } catch (const std::invalid_argument&) {
     return false;  // missing, or no ordinary file
   }
 }
 
-// What a validation writes has at most so many bytes. Without it a file with
-// holes of a few bytes is hashed for hours.
-constexpr std::uint64_t kLargestOutput = std::uint64_t{1} << 30;
-
-bool is_larger(const fs::path& directory, const std::string& name) {
-  try {
-    return open_set_file(directory, name, O_RDONLY).size() > kLargestOutput;
-  } catch (const std::invalid_argument&) {
-    return false;  // missing, or no ordinary file
-  }
+ListedFile listed(const std::string& name, const std::string& text) {
+  return {name, text.size(), sha256(text)};
 }
 
 std::vector<std::string> files_of(const fs::path& directory) try {
@@ -133,7 +127,7 @@ bool is_begun(const fs::path& directory,
   const std::size_t all = files.size();
   for (const BundleInput& copy : copies)
     if (std::ranges::count(files, copy.name) > 0 &&
-        has_bytes(directory, copy.name, sha256(copy.text)))
+        has_bytes(directory, listed(copy.name, copy.text)))
       std::erase(files, copy.name);
   if (all - files.size() == copies.size())
     for (const char* output :
@@ -167,7 +161,9 @@ void remove_partial_files_of(const fs::path& directory) try {
 Json hashes_of(const auto& files) {
   Json list = Json::array();
   for (const auto& file : files)
-    list.push_back({{"file", file.name}, {"sha256", sha256(file.text)}});
+    list.push_back({{"file", file.name},
+                    {"bytes", file.text.size()},
+                    {"sha256", sha256(file.text)}});
   return list;
 }
 
@@ -177,7 +173,7 @@ std::string bundle_text(const BundleContent& content,
                         const InputNames& names,
                         const std::vector<BundleOutput>& outputs) {
   const Json json{{"filetype", kBundleFiletype},
-                  {"format_version", 1},
+                  {"format_version", kBundleVersion},
                   {"beamgyro_version", content.program_version},
                   {"git_revision", content.git_revision},
                   {"request", content.request(names)},
@@ -218,9 +214,7 @@ std::vector<BundleDifference> changed_files(const Bundle& bundle) {
   for (const auto* files : {&bundle.inputs, &bundle.outputs})
     for (const ListedFile& file : *files) {
       listed.insert(file.name);
-      if ((files == &bundle.outputs &&
-           is_larger(bundle.directory, file.name)) ||
-          !has_bytes(bundle.directory, file.name, file.sha256))
+      if (!has_bytes(bundle.directory, file))
         changed.push_back({bundle.directory / file.name, "is not the same"});
     }
   for (const std::string& file : files_of(bundle.directory))
@@ -255,7 +249,7 @@ std::vector<BundleDifference> different_outputs(
     const std::vector<BundleOutput>& outputs) {
   std::vector<BundleDifference> different;
   for (const BundleOutput& output : outputs)
-    if (!has_bytes(bundle.directory, output.name, sha256(output.text)))
+    if (!has_bytes(bundle.directory, listed(output.name, output.text)))
       different.push_back({bundle.directory / output.name, "is not the same"});
   if (!different.empty()) return different;
   InputNames names;
@@ -263,7 +257,7 @@ std::vector<BundleDifference> different_outputs(
   content.program_version = bundle.program_version;
   content.git_revision = bundle.git_revision;
   const std::string text = bundle_text(content, copies, names, outputs);
-  if (!has_bytes(bundle.directory, kBundleFile, sha256(text)))
+  if (!has_bytes(bundle.directory, listed(kBundleFile, text)))
     different.push_back({bundle.directory / kBundleFile, "is not the same"});
   return different;
 }

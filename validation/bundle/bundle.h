@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -17,6 +18,8 @@ inline constexpr const char* kBundleFile = "bundle.json";
 inline constexpr const char* kBundleFiletype = "beamgyro-bundle";
 
 /// Names of the files that a validation writes, below the bundle.
+// Since 2 with the sizes of files.
+inline constexpr long kBundleVersion = 2;
 inline constexpr const char* kResultFile = "result.json";
 inline constexpr const char* kReportFile = "report.txt";
 inline constexpr const char* kPageFile = "report/index.html";
@@ -63,7 +66,8 @@ void require_new_bundle(const std::filesystem::path& directory,
 
 /// A file as bundle.json lists it.
 struct ListedFile {
-  std::string name;    // below the directory, which it does not lead out of
+  std::string name;  // below the directory, which it does not lead out of
+  std::uint64_t bytes = 0;
   std::string sha256;  // in hexadecimal digits
 };
 
@@ -90,8 +94,8 @@ Bundle read_bundle(const std::filesystem::path& directory);
 /// std::invalid_argument when the bundle has no such input.
 std::string listed_name(const Bundle& bundle, const JsonNode& value);
 
-/// Returns the listed files that are missing or have another hash, and the
-/// files that are not listed.
+/// Returns the listed files that are missing or have another size or hash, and
+/// the files that are not listed. A file of another size is not hashed.
 std::vector<BundleDifference> changed_files(const Bundle& bundle);
 
 /// Returns the files that the validation reads and the bundle does not have,

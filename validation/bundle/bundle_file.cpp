@@ -48,8 +48,10 @@ std::vector<ListedFile> listed_files(const JsonNode& list, const Json& json,
   const std::vector<JsonNode> elements = list.elements();
   for (std::size_t k = 0; k < elements.size(); ++k) {
     const JsonNode file = elements[k].at("file");
-    require_known_keys(elements[k], json[k], {"file", "sha256"});
-    files.push_back({plain_name(file), elements[k].at("sha256").text()});
+    require_known_keys(elements[k], json[k], {"file", "bytes", "sha256"});
+    files.push_back({plain_name(file),
+                     elements[k].at("bytes").unsigned_integer(),
+                     elements[k].at("sha256").text()});
     const std::string& name = files.back().name;
     if (!names.insert(name).second)
       file.fail(fmt::format("\"{}\" is there twice; expected it once", name));
@@ -78,7 +80,7 @@ Bundle read_bundle(const fs::path& directory) {
   if (root.at("filetype").text() != kBundleFiletype)
     root.at("filetype")
         .fail(fmt::format("is not \"{}\", what a bundle has", kBundleFiletype));
-  root.at("format_version").integer(1, 1);
+  root.at("format_version").integer(kBundleVersion, kBundleVersion);
   require_known_keys(root, json,
                      {"filetype", "format_version", "beamgyro_version",
                       "git_revision", "request", "inputs", "outputs"});

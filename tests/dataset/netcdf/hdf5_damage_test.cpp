@@ -117,6 +117,25 @@ TEST_F(Hdf5Damage, AttributesWithPartsThatEndBehindThemAreRefused) {
     }
 }
 
+// HDF5 copies as many bytes as type and shape ask for, from the header or from
+// the heap that has the attribute.
+TEST_F(Hdf5Damage, AttributesWithMoreValuesThanTheyHaveRoomForAreRefused) {
+  const Bytes whole = recording_bytes(sample_recording(20));
+  const std::vector<MetadataSum> sums = metadata_sums(whole);
+  for (const std::string name : {"filetype", "long_name", "role"}) {
+    Bytes bytes = whole;
+    // Behind the name, in a multiple of 8 bytes: class and bits of the type,
+    // then its size.
+    const std::size_t size =
+        place_of(whole, name) + name.size() / 8 * 8 + 8 + 4;
+    ASSERT_EQ(bytes[size - 4] & 0xf, 3) << name;  // a text
+    put(bytes, size, std::uint32_t{0x0fff});
+    mend_metadata(bytes, sums);
+    EXPECT_TRUE(rejected(bytes).ends_with("driver read request failed"))
+        << name << ": " << rejected(bytes);
+  }
+}
+
 TEST_F(Hdf5Damage, HeapsThatHdf5CannotHoldAreRefused) {
   const Bytes whole = recording_bytes(sample_recording(20));
   const std::vector<MetadataSum> sums = metadata_sums(whole);

@@ -86,6 +86,15 @@ TEST_F(Hdf5File, ReadsBackEmptyTexts) {
   expect_same(read_recording(file), recording);
 }
 
+TEST_F(Hdf5File, ReadsBackLongTexts) {
+  Recording recording = sample_recording(3);
+  recording.history = std::string(5000, 'h');
+  recording.title = std::string(60000, 't');
+  recording.columns[2].comment = std::string(5000, 'c');
+  write_recording(recording, file);
+  expect_same(read_recording(file), recording);
+}
+
 TEST_F(Hdf5File, ReadsBackARecordingWithoutColumns) {
   Recording recording = sample_recording(3);
   recording.columns.clear();
