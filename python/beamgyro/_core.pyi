@@ -88,6 +88,10 @@ def simulate(scenario: Scenario, stop_on_unlock: bool,
 def simulate_to_file(scenario: Scenario, path: _Path, stop_on_unlock: bool,
                      progress: _Progress) -> list[str]: ...
 
+def simulate_variants(scenario: Scenario, axes: list[list[list[str]]],
+                      variables: list[str], jobs: int, progress: _Progress
+                      ) -> tuple[Recording, list[tuple[str, int]]]: ...
+
 class Campaign:
     @staticmethod
     def read(file: _Path, devices: Optional[int]) -> Campaign: ...

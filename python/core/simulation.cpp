@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "include/beamgyro/scenario.h"
 #include "include/beamgyro/set.h"
 #include "include/beamgyro/simulate.h"
+#include "include/beamgyro/variants.h"
 #include "python/core/bindings.h"
 #include "python/core/long_call.h"
 
@@ -102,6 +104,28 @@ py::tuple simulate_scenario(const Scenario& scenario, bool stop_on_unlock,
     return simulate(scenario, simulation_options(stop_on_unlock, progress));
   });
   return with_warnings(std::move(run.recording), run.warnings);
+}
+
+/// Returns (recording, warnings with the number of their runs). The columns of
+/// the recording have the values of all runs, run after run; its times are
+/// those of one.
+py::tuple simulate_all(const Scenario& scenario,
+                       const std::vector<VariedValues>& axes,
+                       const std::vector<std::string>& variables, unsigned jobs,
+                       const py::object& on_progress) {
+  VariantRuns runs = long_call(on_progress, [=](const Progress& progress) {
+    return simulate_variants(
+        scenario, axes,
+        {.jobs = jobs, .variables = variables, .progress = progress});
+  });
+  py::list warnings;
+  for (const VariantWarning& warning : runs.warnings)
+    warnings.append(py::make_tuple(warning.text, warning.runs));
+  auto all = std::make_shared<Recording>();
+  all->time = std::move(runs.time);
+  all->status = std::move(runs.status);
+  all->columns = std::move(runs.columns);
+  return py::make_tuple(std::move(all), warnings);
 }
 
 std::vector<std::string> simulate_into(const Scenario& scenario,
@@ -206,6 +230,7 @@ void bind_simulation(py::module_& core) {
       .def_property_readonly("seed", &Scenario::seed);
   core.def("simulate", &simulate_scenario);
   core.def("simulate_to_file", &simulate_into);
+  core.def("simulate_variants", &simulate_all);
   py::class_<Campaign>(core, "Campaign")
       .def_static("read", &Campaign::read)
       .def_static("parse", &parse_campaign)
