@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "include/beamgyro/campaign.h"
+#include "include/beamgyro/card.h"
 #include "include/beamgyro/curves.h"
 #include "include/beamgyro/device.h"
 #include "include/beamgyro/scenario.h"
@@ -176,13 +178,34 @@ py::list verify(const Set& set, const py::object& on_progress) {
 
 py::tuple generate_set(const Campaign& campaign,
                        const std::filesystem::path& directory, unsigned jobs,
-                       bool resume, const py::object& on_progress) {
+                       bool resume,
+                       const std::pair<std::uint32_t, std::uint32_t>& shard,
+                       const py::object& on_progress) {
   GenerationOutcome outcome =
       long_call(on_progress, [=](const Progress& progress) {
         return generate(campaign, directory,
-                        {.jobs = jobs, .resume = resume, .progress = progress});
+                        {.jobs = jobs,
+                         .resume = resume,
+                         .progress = progress,
+                         .shard = shard.first,
+                         .shards = shard.second});
       });
-  return py::make_tuple(outcome.failures, std::move(outcome.warnings));
+  return py::make_tuple(outcome.failures, std::move(outcome.warnings),
+                        outcome.is_whole);
+}
+
+std::vector<std::string> write_set_card(
+    const Set& set, const std::map<std::string, std::string>& texts,
+    const py::object& on_progress) {
+  return long_call(on_progress, [=](const Progress& progress) {
+    SetCardOptions options{.license = texts.at("license"),
+                           .url = texts.at("url"),
+                           .creator = texts.at("creator"),
+                           .date = texts.at("date"),
+                           .version = texts.at("version"),
+                           .progress = progress};
+    return write_card(set, options);
+  });
 }
 
 Campaign parse_campaign(const PathsAndTexts& files,
@@ -254,12 +277,14 @@ void bind_simulation(py::module_& core) {
            [](const Set& set, std::uint32_t device) {
              return part_name(set.part(device));
            })
-      .def("recording", &Set::recording,
+      .def("recording", &Set::recording, py::arg("run"), py::arg("device"),
+           py::arg("variables") = std::vector<std::string>(),
            py::call_guard<py::gil_scoped_release>())
       .def("slow_recording", &Set::slow_recording,
            py::call_guard<py::gil_scoped_release>())
       .def("parameters", &parameters_of)
-      .def("verify", &verify);
+      .def("verify", &verify)
+      .def("write_card", &write_set_card);
 }
 
 }  // namespace beamgyro::python
