@@ -8,6 +8,7 @@
 
 #include "api/program_version.h"
 #include "api/reported_progress.h"
+#include "include/beamgyro/option_error.h"
 #include "sim/campaign/shard_making.h"
 
 namespace beamgyro {
@@ -84,6 +85,17 @@ void make_files(const internal::ShardPlan& plan,
       });
 }
 
+internal::SetTask task_of(const GenerationOptions& options) {
+  const std::uint32_t number = options.shard, of = options.shards;
+  if (number == 0 && of == 0) return {};
+  if (number == 0 || number > of)
+    throw OptionError([=](const OptionSpelling& spelled) {
+      return fmt::format("{}: expected a task from 1 to their number",
+                         spelled("shard", fmt::format("({}, {})", number, of)));
+    });
+  return {number, of};
+}
+
 }  // namespace
 
 GenerationOutcome generate(const Campaign& campaign,
@@ -93,17 +105,19 @@ GenerationOutcome generate(const Campaign& campaign,
   const internal::ShardPlan plan(
       own, {internal::kProgramVersion, internal::kGitRevision});
   internal::require_moderate_files(campaign.name(), plan);
-  internal::SetWriter set(directory, plan.manifest_head(), own.sources, {},
+  const internal::SetTask task = task_of(options);
+  internal::SetWriter set(directory, plan.manifest_head(), own.sources, task,
                           options.resume);
   std::vector<std::string> warnings = internal::lock_warnings(set, directory);
   const std::vector<std::uint32_t> files = set.lacking();
   make_files(plan, files, options, set);
   const internal::SetState state = set.finish();
-  internal::require_nothing_lost(directory, {}, plan.manifest_head(), state);
+  internal::require_nothing_lost(directory, task, plan.manifest_head(), state);
   for (const std::string& text : internal::caution_texts(state))
     warnings.push_back(fmt::format("{}: {}", directory.string(), text));
   return {.files = state.entries.size(),
           .planned_files = state.planned,
+          .is_whole = state.is_merged,
           .files_made = files.size(),
           .device_runs = state.device_runs(),
           .failures = state.failures(),

@@ -11,21 +11,23 @@
 #include "sim/scenario/simulation.h"
 
 namespace beamgyro {
-namespace {
+namespace internal {
 
-// The device is a text in memory, and no key could name another one.
 void require_no_device_key(const std::vector<std::string>& overrides) {
   for (const std::string& text : overrides)
-    if (internal::key_of_override(text) == "device")
-      internal::reject_override(
-          text, "the device is in memory; expected it as a Device");
+    if (key_of_override(text) == "device")
+      reject_override(text, "the device is in memory; expected it as a Device");
 }
+
+}  // namespace internal
+
+namespace {
 
 Scenario scenario_of(internal::InputText scenario, internal::InputText device,
                      std::vector<std::string> device_overrides,
                      std::vector<std::string> overrides,
                      const internal::ProfileTexts& profiles) {
-  require_no_device_key(overrides);
+  internal::require_no_device_key(overrides);
   auto state = std::make_shared<internal::ScenarioState>();
   state->loaded = internal::load_scenario(
       scenario, device, internal::merged_overrides(device_overrides, overrides),
@@ -68,7 +70,7 @@ Scenario Scenario::parse(const std::string& text, const Device& device,
 }
 
 Scenario Scenario::with(const std::vector<std::string>& overrides) const {
-  require_no_device_key(overrides);
+  internal::require_no_device_key(overrides);
   std::vector<std::string> all = content().overrides;
   std::erase_if(all, [](const std::string& text) {  // it has been read
     return internal::key_of_override(text) == "device";

@@ -40,4 +40,8 @@ struct ScenarioState {
   UnitGyro gyro = {};
 };
 
+/// Throws OptionError for the key "device": it is a text in memory, and no key
+/// can name another one.
+void require_no_device_key(const std::vector<std::string>& overrides);
+
 }  // namespace beamgyro::internal

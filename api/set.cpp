@@ -151,9 +151,10 @@ std::vector<std::uint32_t> Set::devices_of(SetPart wanted) const {
   return found;
 }
 
-Recording Set::recording(std::string_view run, std::uint32_t device) const {
+Recording Set::recording(std::string_view run, std::uint32_t device,
+                         const std::vector<std::string>& variables) const {
   const internal::OpenSet::Place place = content().place_of(run, device);
-  return place.file->recording(place.position);
+  return place.file->recording(place.position, variables);
 }
 
 Recording Set::slow_recording(std::string_view run,

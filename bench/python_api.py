@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """Measures the Python package: PYTHONPATH=BUILD/python bench/python_api.py
 
-Time of `import beamgyro`, overhead of a run, two threads against one, and
-the memory of 10,000 runs in one process.
+Time of `import beamgyro`, overhead of a run, many variants of a run, two
+threads against one, and the memory of 10,000 runs in one process.
 """
 
 from __future__ import annotations
@@ -72,6 +72,13 @@ def two_threads(scenario: bg.Scenario) -> float:
     return seconds(lambda: runs(8), 1) / seconds(together, 1)
 
 
+def many_runs(scenario: bg.Scenario) -> float:
+    """Variants with another device each, a second of wall time."""
+    lengths = [0.04 + 1e-6 * k for k in range(1000)]
+    return 1000 / seconds(lambda: bg.run_many(
+        scenario, {"beam.length_m": lengths}), 1)
+
+
 def main() -> None:
     """Measure and print."""
     print(f"import                    {1e3 * import_time():8.1f} ms")
@@ -81,6 +88,7 @@ def main() -> None:
           " us")
     print("one sample, dataset       "
           f"{1e6 * seconds(lambda: bg.run(one), 200):8.1f} us")
+    print(f"variants of one sample    {many_runs(one):8.0f} runs/s")
     long = bg.Scenario(SCENARIOS / "warm_up.toml",
                        set={"duration_s": 10, "fidelity": "envelope"})
     print(f"two threads against one   {two_threads(long):8.2f}")

@@ -22,6 +22,7 @@ void add_export(CommandLine& program);
 void add_validate(CommandLine& program);
 void add_plan(CommandLine& program);
 void add_allan(CommandLine& program);
+void add_card(CommandLine& program);
 void add_verify(CommandLine& program);
 void add_info(CommandLine& program);
 void add_plot(CommandLine& program);

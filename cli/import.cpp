@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/format.h>
+#include "include/beamgyro/import.h"
 
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "api/program_version.h"
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "cli/progress.h"
 #include "cli/terminal.h"
-#include "config/document.h"
-#include "dataset/files/text_file.h"
-#include "dataset/log/log_import.h"
-#include "report/recording_report.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -25,29 +20,16 @@ struct ImportArguments {
 
 int run_import(const ImportArguments& arguments) {
   require_recording_name(arguments.output);
-  const LogMap map =
-      read_log_map(ConfigDocument::read(arguments.map), arguments.axis);
   std::vector<std::filesystem::path> inputs = {arguments.log, arguments.map};
   if (!arguments.join.empty()) inputs.emplace_back(arguments.join);
   require_output(arguments.output, inputs);
   std::optional<Progress> progress("importing " + arguments.log);
-  const std::string second =
-      arguments.join.empty() ? "" : read_text_file(arguments.join);
-  std::optional<SecondLog> joined;
-  if (!arguments.join.empty()) joined = SecondLog{second, arguments.join};
-  ImportedLog log =
-      import_log(read_text_file(arguments.log), arguments.log, map, joined);
-  Recording& recording = log.recording;
-  recording.program_version = kProgramVersion;
-  recording.git_revision = kGitRevision;
-  recording.title = "imported log of a gyro";
-  recording.history = history_line("import");
-  if (!arguments.axis.empty())
-    recording.overrides_text = fmt::format("axis={}\n", arguments.axis);
-  const std::string text = import_report(log, arguments.log, arguments.join);
-  write_recording(recording, arguments.output);
+  const ImportedRecording imported =
+      beamgyro::import_log(arguments.log, arguments.map,
+                           {.axis = arguments.axis, .join = arguments.join});
+  write_recording(imported.recording, arguments.output);
   progress.reset();
-  print_result(text);
+  print_result(imported.text);
   return 0;
 }
 

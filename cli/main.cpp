@@ -129,6 +129,7 @@ int run_program(const std::vector<std::string>& words) {
   add_info(program);
   add_plot(program);
   add_verify(program);
+  add_card(program);
   add_allan(program);
   const Action action = program.parse(words);
   set_quiet(program.quiet());

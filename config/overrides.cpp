@@ -259,6 +259,14 @@ bool Overrides::all_used() const {
                      [](const Override& set) { return set.used; });
 }
 
+std::vector<std::string> Overrides::shared_or_unused() const {
+  std::vector<std::string> arguments;
+  for (const Override& set : state_->overrides)
+    if (!set.used || set.value.kind == ConfigNode::Kind::kTable)
+      arguments.push_back(set.argument);
+  return arguments;
+}
+
 std::vector<std::string> Overrides::known_keys() const {
   return {state_->known_keys.begin(), state_->known_keys.end()};
 }

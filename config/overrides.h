@@ -49,6 +49,11 @@ class Overrides {
   /// Returns whether every override was read by some document.
   bool all_used() const;
 
+  /// Returns the arguments that some other document may depend on: those that
+  /// no document has read yet, and those whose value is a table, of which two
+  /// documents may read a part each.
+  std::vector<std::string> shared_or_unused() const;
+
   /// Returns the dotted keys that documents asked for, sorted.
   std::vector<std::string> known_keys() const;
 

@@ -58,7 +58,8 @@ MAY_INCLUDE = {
             "validation/external", "validation/bundle"},
     # The package of Python: the public headers, and few parts below them.
     "python": {"include", "api", "dataset/recording", "dataset/netcdf",
-               "compensation/inputs", "validation/external"},
+               "compensation/inputs", "compensation/rows",
+               "validation/external"},
     "bench": {*ALL, *VALIDATION, *SENSITIVITY, "planning", "report"},
     "fuzz": set(ALL),  # of tests/ only
     # of tests/ only

@@ -20,11 +20,11 @@ tests=(libgtest-dev libbenchmark-dev clang-format clang-tidy netcdf-bin
        python3-netcdf4 python3-scipy
        dpkg-dev file lintian man-db doxygen python3-breathe python3-sphinx
        python3-sphinx-rtd-theme python3-myst-parser
-       python3-ipykernel python3-nbclient python3-nbconvert python3-tqdm)
+       python3-ipykernel python3-nbclient python3-tqdm python3-rdflib python3-yaml)
 wheel=(patchelf binutils)
 # What scripts/sanitize.sh has beyond the tests.
 sanitizers=(clang libclang-rt-14-dev)
-deep=("${wheel[@]}" clang chromium slurm-wlm munge octave octave-netcdf git
+deep=("${wheel[@]}" clang chromium slurm-wlm munge snakemake octave octave-netcdf git
       gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm)
 bare=("${wheel[@]}" debootstrap buildah git)
 

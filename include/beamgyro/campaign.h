@@ -58,12 +58,16 @@ struct GenerationOptions {
   unsigned jobs = 0;       ///< threads; 0: one per core
   bool resume = false;     ///< continues the set that is in the directory
   Progress progress = {};  ///< after each run of a device
+  /// Makes only the files of task `shard` of `shards`, which share the
+  /// directory and may run at once on any hosts; 0: all files.
+  std::uint32_t shard = 0, shards = 0;
 };
 
 /// What is in a directory after a generation.
 struct GenerationOutcome {
   std::size_t files = 0, planned_files = 0;
-  std::size_t files_made = 0;     ///< by this call
+  bool is_whole = false;       ///< every file is there, and the manifest merged
+  std::size_t files_made = 0;  ///< by this call
   std::uint64_t device_runs = 0;  ///< in all files
   std::uint64_t failures = 0;     ///< of them, devices that do not work
   std::vector<std::string> warnings;
@@ -72,7 +76,8 @@ struct GenerationOutcome {
 
 /// Simulates every device of a campaign and writes the set to a directory, as
 /// `beamgyro generate` does: the bytes do not depend on the number of threads,
-/// nor on interruptions. Throws std::invalid_argument for a directory that
+/// nor on interruptions. Throws OptionError for a task that is none of 1 to
+/// `shards`, std::invalid_argument for a directory that
 /// cannot hold the set or holds another one, std::runtime_error when writing
 /// fails, when another process works on the same set, or when no device works,
 /// and Cancelled, after which `resume` goes on.

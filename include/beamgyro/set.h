@@ -68,9 +68,11 @@ class Set : public Shared<internal::OpenSet> {
   /// Returns the devices of a part, in order.
   std::vector<std::uint32_t> devices_of(SetPart part) const;
 
-  /// Returns a run of a device in the units of recordings. Throws
-  /// std::invalid_argument for a device that failed, with the reason.
-  Recording recording(std::string_view run, std::uint32_t device) const;
+  /// Returns a run of a device in the units of recordings. Where `variables`
+  /// are named, no other ones are read. Throws std::invalid_argument for a
+  /// device that failed, with the reason.
+  Recording recording(std::string_view run, std::uint32_t device,
+                      const std::vector<std::string>& variables = {}) const;
 
   /// The same for the truths that are stored at a lower rate; without columns
   /// where there are none.

@@ -26,8 +26,9 @@ from beamgyro._curves import (HalfSplit, area_metric, characterise,
                               curve_figures, half_split)
 from beamgyro._dataset import open_recording, save_recording
 from beamgyro._device import Device
-from beamgyro._estimator import Estimator, RunSplit
+from beamgyro._estimator import Estimator, LegSplit, RunSplit
 from beamgyro._export import export
+from beamgyro._import import import_log
 from beamgyro._many import run_many
 from beamgyro._results import (AllanResult, CurveFiguresResult, PlanResult,
                                SensitivityResult)
@@ -37,15 +38,17 @@ from beamgyro._training import features, train, training_rows
 from beamgyro._validation import validate
 from beamgyro._validation_result import ValidationResult
 from beamgyro._warnings import BeamgyroWarning
+from beamgyro._windows import Windows
 
 __all__ = [
     "AllanResult", "BeamgyroWarning", "Campaign", "Compensator",
-    "CurveFiguresResult", "Device", "Estimator", "HalfSplit", "PlanResult",
-    "RunSplit", "Scenario", "SensitivityResult", "Set", "ValidationResult", "__version__", "allan",
-    "area_metric", "characterise", "compensate", "curve_figures", "export",
-    "features", "generate", "half_split", "open_recording", "open_set", "plan",
-    "run", "run_many", "run_to_file", "save_recording", "sensitivity", "train",
-    "training_rows", "validate",
+    "CurveFiguresResult", "Device", "Estimator", "HalfSplit", "LegSplit",
+    "PlanResult", "RunSplit", "Scenario", "SensitivityResult", "Set",
+    "ValidationResult", "Windows", "__version__", "allan", "area_metric",
+    "characterise", "compensate", "curve_figures", "export", "features",
+    "generate", "half_split", "import_log", "open_recording", "open_set",
+    "plan", "run", "run_many", "run_to_file", "save_recording", "sensitivity",
+    "train", "training_rows", "validate",
 ]
 
 

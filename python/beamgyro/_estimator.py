@@ -8,9 +8,10 @@ from typing import Any, Union
 
 import numpy as np
 
-from beamgyro import _arguments, _checks, _lazy, _shipped
+from beamgyro import _arguments, _checks, _core, _lazy, _shipped
 from beamgyro._checks import Path
 from beamgyro._compensation import Compensator, compensate
+from beamgyro._dataset import recording_of
 from beamgyro._training import train
 
 Array = np.ndarray[Any, Any]
@@ -140,33 +141,73 @@ class RunSplit:
             another run begins.
     """
 
+    _few = ("holds one run, whose time increases throughout; expected two or "
+            "more to hold one out")
+
     def __init__(self, time: int = 0) -> None:
         self.time = time
 
     def get_n_splits(self, X: Any = None, y: Any = None,
                      groups: Any = None) -> int:
-        """Return the number of runs."""
+        """Return the number of parts that are held out in turn."""
         return len(self._parts(X))
 
     def split(self, X: Any, y: Any = None, groups: Any = None
               ) -> Iterator[tuple[Array, Array]]:
-        """Give the rows of the other runs and of each run in turn.
+        """Give the rows of the other parts and of each part in turn.
 
         Raises:
-            ValueError: there is one run only.
+            ValueError: there is one part only.
         """
         parts = self._parts(X)
         if len(parts) < 2:
-            raise ValueError("X: holds one run, whose time increases "
-                             "throughout; expected two or more to hold one out")
+            raise ValueError(f"X: {self._few}")
         rows = np.arange(parts[-1].stop)
         for part in parts:
             yield np.delete(rows, part), rows[part]
 
     def _parts(self, X: Any) -> list[slice]:
-        time = X["time"] if hasattr(X, "columns") else \
-            np.asarray(X)[:, self.time]
-        return _runs(np.asarray(time, dtype=np.float64))
+        return _runs(_column(X, "time", self.time))
+
+
+class LegSplit(RunSplit):
+    """Holds out each leg in turn, as ``cross_validation="leg"`` of `train`.
+
+    A leg is a part of a run between two reversals of the temperature by 2 K.
+    Where one run is all there is, this tests what a rise says about a fall.
+
+    Args:
+        time: the column of X that is the time, as of `RunSplit`.
+        temperature: the column that is the temperature [degC]; of a table of
+            pandas the column "temperature" counts.
+    """
+
+    _few = ("holds one leg: the temperature turns nowhere by 2 K; expected "
+            "two or more to hold one out")
+
+    def __init__(self, time: int = 0, temperature: int = 1) -> None:
+        super().__init__(time)
+        self.temperature = temperature
+
+    def _parts(self, X: Any) -> list[slice]:
+        columns = {"time": _column(X, "time", self.time),
+                   "temperature": _column(X, "temperature",
+                                          self.temperature)}
+        parts = []
+        for run in super()._parts(X):
+            recording = recording_of(
+                _recording(columns, run, np.zeros(len(columns["time"]))), "X")
+            legs = _core.training_rows(["temperature"], "X", recording, 0)[3]
+            begins = run.start + np.flatnonzero(np.diff(legs, prepend=-1))
+            parts += [slice(int(first), int(last)) for first, last in
+                      zip(begins, [*begins[1:], run.stop])]
+        return parts
+
+
+def _column(X: Any, name: str, number: int) -> Array:
+    """A column of a table of pandas by its name, else by its number."""
+    values = X[name] if hasattr(X, "columns") else np.asarray(X)[:, number]
+    return np.asarray(values, dtype=np.float64)
 
 
 def _runs(time: Array) -> list[slice]:

@@ -11,7 +11,10 @@ _WHAT_FOR = {
     "matplotlib": "plots",
     "h5py": "sets",
     "pandas": "data frames",
+    "pyarrow": "Parquet files",
 }
+# Where it is no package of Debian 12.
+_INSTALL = {"pyarrow": "pip install pyarrow"}
 
 
 def module(name: str) -> ModuleType:
@@ -22,8 +25,9 @@ def module(name: str) -> ModuleType:
         top = name.partition(".")[0]
         raise ImportError(
             f"{top} is missing, which is needed for "
-            f"{_WHAT_FOR.get(top, 'this')}; install the package "
-            f"python3-{top}", name=top) from error
+            f"{_WHAT_FOR.get(top, 'this')}; "
+            + _INSTALL.get(top, f"install the package python3-{top}"),
+            name=top) from error
 
 
 def xarray() -> ModuleType:

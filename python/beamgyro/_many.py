@@ -3,16 +3,11 @@
 
 from __future__ import annotations
 
-import collections
-import itertools
-import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Optional
 
-import numpy as np
-
-from beamgyro import _arguments, _checks, _core, _lazy
+from beamgyro import _arguments, _checks, _core, _lazy, _toml
 from beamgyro._device import DeviceLike, Keys
 from beamgyro._progress import ProgressArgument, watched
 from beamgyro._scenario import Fidelity, Scenario, ScenarioLike
@@ -20,8 +15,6 @@ from beamgyro._warnings import warn
 
 if TYPE_CHECKING:
     import xarray as xr
-
-_BATCH = 64  # variants that wait for a thread at once, for each thread
 
 
 def run_many(scenario: ScenarioLike,
@@ -62,25 +55,16 @@ def run_many(scenario: ScenarioLike,
     kept = _checks.texts(variables, "variables")
     base = Scenario(scenario, device=device, set={
         **(set or {}), **({"fidelity": fidelity} if fidelity else {})})
-    shape = tuple(map(len, axes.values()))
-    variants = [dict(zip(axes, values))
-                for values in itertools.product(*axes.values())]
-    threads = _arguments.jobs(jobs or 0) or len(os.sched_getaffinity(0))
-    said: collections.Counter[str] = collections.Counter()
-    table: Optional[_Table] = None
+    texts = [[_toml.overrides({name: value}) for value in values]
+             for name, values in axes.items()]
+    threads = _arguments.jobs(jobs or 0)
     with watched(progress, "simulating") as function:
-        for done, (variant, (recording, warnings)) in enumerate(zip(
-                variants, _simulated(base, variants, threads))):
-            if table is None:
-                table = _Table(recording, len(variants), kept)
-            table.add(done, recording, _words(variant))
-            said.update(warnings)
-            if function is not None:
-                function((done + 1) / len(variants))
-    warn(f"{base.name}: {text} (in {count} of {len(variants)} runs)"
-         for text, count in said.items())
-    assert table is not None  # there is one variant at least
-    return table.dataset(axes, shape)
+        recording, warnings = _core.simulate_variants(
+            base._native, texts, kept, threads, function)
+    shape = tuple(map(len, axes.values()))
+    warn(f"{base.name}: {text} (in {count} of {math.prod(shape)} runs)"
+         for text, count in warnings)
+    return _dataset(recording, axes, shape, kept)
 
 
 def _axes(keys: Optional[Mapping[str, Sequence[Any]]], seeds: Iterable[int]
@@ -103,65 +87,18 @@ def _axes(keys: Optional[Mapping[str, Sequence[Any]]], seeds: Iterable[int]
     return axes
 
 
-def _words(variant: Mapping[str, Any]) -> str:
-    return ", ".join(f"{name} = {value}" for name, value in variant.items())
-
-
-def _simulated(base: Scenario, variants: Sequence[Mapping[str, Any]],
-               threads: int
-               ) -> Iterator[tuple[_core.Recording, list[str]]]:
-    """The runs in the order of their variants, some of them ahead."""
-    def one(variant: Mapping[str, Any]) -> Any:
-        try:
-            core = Scenario(base, set=variant)._native if variant \
-                else base._native
-            return _core.simulate(core, False, None)
-        except (ValueError, RuntimeError) as error:
-            raise type(error)(f"{_words(variant)}: {error}") from None
-
-    with ThreadPoolExecutor(threads) as pool:
-        try:
-            for first in range(0, len(variants), _BATCH * threads):
-                yield from pool.map(one, variants[first:first
-                                                  + _BATCH * threads])
-        finally:
-            pool.shutdown(cancel_futures=True)
-
-
-class _Table:
-    """The values of all runs, a row for each."""
-
-    def __init__(self, recording: _core.Recording, count: int,
-                 kept: Sequence[str]) -> None:
-        arrays = recording.arrays()
-        unknown = [name for name in kept if name not in arrays]
-        if unknown:
-            raise ValueError(f"variables: {unknown[0]!r}: the runs have none; "
-                             f"expected some of {', '.join(arrays)}")
-        self._time = arrays["time"]
-        self._attributes = recording.variable_attributes()
-        self._rows = {name: np.empty((count, *values.shape), values.dtype)
-                      for name, values in arrays.items()
-                      if name != "time" and (not kept or name in kept)}
-
-    def add(self, number: int, recording: _core.Recording,
-            words: str) -> None:
-        """Copies the values of a run to its row."""
-        arrays = recording.arrays()
-        if not np.array_equal(arrays["time"], self._time):
-            raise ValueError(f"{words}: has other times than the first run; "
-                             "expected runs of one duration and rate")
-        for name, rows in self._rows.items():
-            rows[number] = arrays[name]
-
-    def dataset(self, axes: Mapping[str, Sequence[Any]],
-                shape: tuple[int, ...]) -> xr.Dataset:
-        """Return all of it."""
-        dimensions = (*axes, "time")
-        places: dict[str, Any] = {
-            **axes, "time": ("time", self._time, self._attributes["time"])}
-        made: xr.Dataset = _lazy.xarray().Dataset(
-            {name: (dimensions, rows.reshape(*shape, -1),
-                    self._attributes[name])
-             for name, rows in self._rows.items()}, places)
-        return made
+def _dataset(recording: _core.Recording, axes: Mapping[str, Sequence[Any]],
+             shape: tuple[int, ...], kept: Sequence[str]) -> xr.Dataset:
+    """The values of all runs, of which none is copied."""
+    arrays = recording.arrays()
+    attributes = recording.variable_attributes()
+    time = arrays.pop("time")
+    if kept and "status" not in kept:
+        del arrays["status"]
+    dimensions = (*axes, "time")
+    places: dict[str, Any] = {
+        **axes, "time": ("time", time, attributes["time"])}
+    made: xr.Dataset = _lazy.xarray().Dataset(
+        {name: (dimensions, values.reshape(*shape, time.size),
+                attributes[name]) for name, values in arrays.items()}, places)
+    return made

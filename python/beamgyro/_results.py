@@ -120,6 +120,12 @@ class PlanResult(Report):
         """The temperatures of the chamber, in their order."""
         return list(self.data["schedule"]["temperatures_degC"])
 
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the soaks as a table of pandas, with begin and end [s]."""
+        made: pd.DataFrame = _lazy.module("pandas").DataFrame(
+            self.data["schedule"]["visits"])
+        return made
+
     @property
     def schedule(self) -> Scenario:
         """The schedule as a scenario of the device."""

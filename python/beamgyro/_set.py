@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union, overload
 
 import numpy as np
 
-from beamgyro import _arguments, _checks, _core, _lazy, _toml
+from beamgyro import (_adapters, _arguments, _checks, _core, _lazy, _parquet,
+                      _toml, _windows)
 from beamgyro._dataset import Path, dataset_of
 from beamgyro._device import Device, Keys
 from beamgyro._native import Native, Wrapper
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 CampaignLike = Union["Campaign", Path, Keys]
+
+_MOST_TASKS = 1000000  # that share a directory
 
 
 class Campaign(Wrapper):
@@ -253,12 +256,97 @@ class Set(Wrapper, Mapping[tuple[str, int], "xr.Dataset"]):
     def _failed(self) -> set[tuple[str, int]]:
         return {(run, device) for run, device, _ in self.failures}
 
-    def _recordings_of(self, part: str) -> Iterator[_core.Recording]:
+    def torch(self, inputs: Sequence[str] = _adapters.DEFAULT_INPUTS,
+              target: str = _windows.BIAS, window: int = 1, *,
+              part: Optional[str] = "train", runs: Iterable[str] = (),
+              step: Optional[int] = None) -> _windows.Windows:
+        """Return windows of the runs as a map-style dataset of torch.
+
+        >>> windows = set.torch(["temperature", "quadrature"], window=600)
+        >>> loader = DataLoader(windows, num_workers=2,
+        ...                     batch_sampler=windows.batches(64, workers=2))
+
+        It needs no torch itself: its items are arrays of NumPy, which the
+        loader makes tensors of. The status of every run is read at once.
+
+        Args:
+            inputs: measured variables, or features as model files name them.
+            target: "bias", the measured rate less the true rate, or a
+                variable.
+            window: samples of an item.
+            part: "train", "validation" or "test"; None: all devices.
+            runs: runs of the set to use; all without.
+            step: samples from one window to the next; without, `window`.
+
+        Raises:
+            ValueError: there is no such variable or run, or no window is
+                without a sample that is unpowered, saturated or not locked.
+        """
+        length = _arguments.count(window, "window")
+        return _windows.Windows(
+            self, self._chosen(part, runs), _windows.Columns(inputs, target),
+            length, length if step is None else _arguments.count(step, "step"))
+
+    def to_parquet(self, path: Path,
+                   inputs: Sequence[str] = _adapters.DEFAULT_INPUTS,
+                   target: str = _windows.BIAS, *,
+                   part: Optional[str] = None,
+                   runs: Iterable[str] = ()) -> None:
+        """Write the samples as a table to FILE.parquet; pyarrow does it.
+
+        Its columns are run, device, part, time, the inputs and the target, as
+        of `torch`. Samples without power, without lock or beyond the full
+        scale are left out. A row group is a run of a device, so that memory
+        does not grow with the set.
+
+        Raises:
+            ImportError: pyarrow is missing.
+            ValueError: there is no such variable, run or part.
+        """
+        _parquet.write(self, self._chosen(part, runs),
+                       _windows.Columns(inputs, target), path)
+
+    def card(self, *, license: str = "", url: str = "", creator: str = "",
+             date: str = "", version: str = "1.0.0",
+             progress: ProgressArgument = False) -> None:
+        """Write croissant.json and README.md into the directory of the set.
+
+        They are those of ``beamgyro card``. What Croissant requires and is
+        not given is a warning.
+
+        Args:
+            license: an address, or a name of SPDX such as "CC-BY-4.0".
+            url: the page of the set.
+            creator: who made it.
+            date: of publication, "2026-11-28".
+            version: of the set.
+            progress: as of `generate`.
+        """
+        texts = {name: _checks.text(value, name) for name, value in (
+            ("license", license), ("url", url), ("creator", creator),
+            ("date", date), ("version", version))}
+        with watched(progress, "reading the set") as function:
+            warn(self._native.write_card(texts, function))
+
+    def _chosen(self, part: Optional[str],
+                runs: Iterable[str]) -> list[tuple[str, int]]:
+        """The runs of devices that have values, by device."""
+        names = _checks.texts(runs, "runs") or self.runs
+        for name in names:
+            if name not in self.runs:
+                raise ValueError(f"runs: {_checks.shown(name)}: expected some "
+                                 f"of {', '.join(self.runs)}")
+        devices = (range(self.devices) if part is None
+                   else self.devices_of(part))
         failed = self._failed()
-        for device in self.devices_of(part):
-            for run in self.runs:
-                if (run, device) not in failed:
-                    yield self._native.recording(run, device)
+        return [(run, device) for device in devices for run in names
+                if (run, device) not in failed]
+
+    def _recordings_of(self, part: str
+                       ) -> Iterator[tuple[str, _core.Recording]]:
+        for run, device in self._chosen(part, ()):
+            yield (f"{run} of device {device}",
+                   self._native.recording(run, device))
 
     def __getitem__(self, key: tuple[str, int]) -> xr.Dataset:
         if key not in self:
@@ -304,9 +392,25 @@ def open_set(directory: Path) -> Set:
     return Set(directory)
 
 
+@overload
+def generate(campaign: CampaignLike, directory: Path, *,
+             devices: Optional[int] = ..., jobs: int = ...,
+             resume: bool = ..., shard: None = ...,
+             progress: ProgressArgument = ...) -> Set: ...
+
+
+@overload
+def generate(campaign: CampaignLike, directory: Path, *,
+             devices: Optional[int] = ..., jobs: int = ...,
+             resume: bool = ..., shard: tuple[int, int],
+             progress: ProgressArgument = ...) -> Optional[Set]: ...
+
+
 def generate(campaign: CampaignLike, directory: Path, *,
              devices: Optional[int] = None, jobs: int = 0,
-             resume: bool = False, progress: ProgressArgument = True) -> Set:
+             resume: bool = False,
+             shard: Optional[tuple[int, int]] = None,
+             progress: ProgressArgument = True) -> Optional[Set]:
     """Simulate every device of a campaign into a directory.
 
     The bytes are those of ``beamgyro generate``. They do not depend on
@@ -318,8 +422,14 @@ def generate(campaign: CampaignLike, directory: Path, *,
         devices: replaces the number of devices in the file.
         jobs: threads; 0: one for each core.
         resume: continues the set that is in the directory.
+        shard: (i, n) makes only the files of task i of n, 1 to n, as
+            ``--shard`` does: tasks share the directory, and may run at once
+            on any hosts.
         progress: True for a bar on standard error, or a function that is
             called with the share of the work that is done, from 0 to 1.
+
+    Returns:
+        The set; with `shard` None, while files of other tasks are missing.
 
     Raises:
         ValueError: something is wrong in the campaign, or the directory
@@ -330,11 +440,21 @@ def generate(campaign: CampaignLike, directory: Path, *,
     folder = _checks.path(directory, "directory", "the name of a directory")
     threads = _arguments.jobs(jobs)
     go_on = _checks.flag(resume, "resume")
+    task = (0, 0) if shard is None else _task(shard)
     with watched(progress, "generating") as function:
-        failures, warnings = _core.generate(core, folder, threads, go_on,
-                                            function)
+        failures, warnings, is_whole = _core.generate(
+            core, folder, threads, go_on, task, function)
     warn(warnings)
     if failures:
         warn([f"{folder}: {failures} runs have no values, since "
               "their devices do not work; see Set.failures"])
-    return Set(directory)
+    return Set(directory) if is_whole else None
+
+
+def _task(shard: Any) -> tuple[int, int]:
+    """The number of a task and the number of all tasks."""
+    pair = _checks.wholes(shard, "shard")
+    if len(pair) != 2 or not 1 <= pair[0] <= pair[1] <= _MOST_TASKS:
+        raise _checks.wrong(shard, "shard", "(i, n) with i from 1 to n, and n "
+                            f"of at most {_MOST_TASKS}")
+    return pair[0], pair[1]

@@ -133,10 +133,6 @@ def train(model: Union[Path, Mapping[str, Any]],
     return Compensator._of(compensator)
 
 
-_UNPOWERED = 1  # bits of the status, as docs/reference/recording.md has them
-_NO_ROW = 1 | 2 | 4  # without power, saturated, not locked
-
-
 def features(recording: Union[xr.Dataset, Path],
              inputs: Sequence[str] = _adapters.DEFAULT_INPUTS
              ) -> np.ndarray[Any, Any]:
@@ -170,49 +166,25 @@ def training_rows(runs: Union[Runs, Set],
             fullest is left out, as `train` does. 0: every sample.
 
     Returns:
-        The features (rows, inputs) and the labels (rows).
+        The features (rows, inputs) and the labels (rows), as `train` makes
+        them.
+
+    Raises:
+        ValueError: a run has no true rate, an input, or no usable sample; as
+            in `train`.
     """
-    recordings: Iterable[_core.Recording]
     every_s = _arguments.number(every_s, "every_s", least=0)
     names = _checks.some_texts(inputs, "inputs")
+    recordings: Iterable[tuple[str, _core.Recording]]
     if isinstance(runs, Set):
         recordings = runs._recordings_of("train" if part is None else part)
     else:
         _checks.refuse("for a set", part=part)
-        recordings = (one for _, one in _recordings(named_runs(runs)))
-    found = [_rows_of(one, names, every_s) for one in recordings]
+        recordings = _recordings(named_runs(runs))
+    found = [_core.training_rows(names, name, one, every_s)[:2]
+             for name, one in recordings]
     if not found:
         raise ValueError("no recordings to make rows of; expected at least "
                          "one")
-    if not any(labels.size for _, labels in found):
-        raise ValueError("runs: have no sample that is powered, locked and not "
-                         "saturated; expected at least one")
     return (np.concatenate([rows for rows, _ in found]),
             np.concatenate([labels for _, labels in found]))
-
-
-def _rows_of(recording: _core.Recording, inputs: list[str], every_s: float
-             ) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
-    arrays = recording.arrays()
-    if "true_rate" not in arrays:
-        raise ValueError("true_rate: the recording has none; expected one "
-                         "from a simulation or a bench")
-    rows = _core.features(inputs, recording)
-    labels = arrays["rate"] - arrays["true_rate"]
-    status, time = arrays["status"], arrays["time"]
-    good = (status & _NO_ROW) == 0
-    if every_s == 0 or not good.any():
-        return rows[good], labels[good]
-    # As row_blocks_of() of the compiled part does.
-    powered = (status & _UNPOWERED) == 0
-    begins = powered & ~np.concatenate([[False], powered[:-1]])
-    cycle = np.cumsum(begins)[good] - 1
-    block = np.floor((time[good] - time[begins][cycle]) / every_s)
-    changes = (np.diff(cycle, prepend=-1) != 0) | (
-        np.diff(block, prepend=-1.0) != 0)
-    starts = np.flatnonzero(changes)
-    counts = np.diff(np.append(starts, block.size))
-    full = 2 * counts >= counts.max()
-    return ((np.add.reduceat(rows[good], starts, axis=0)
-             / counts[:, None])[full],
-            (np.add.reduceat(labels[good], starts) / counts)[full])

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -17,7 +18,9 @@
 
 #include "compensation/inputs/features.h"
 #include "compensation/inputs/input.h"
+#include "compensation/rows/training_rows.h"
 #include "include/beamgyro/compensator.h"
+#include "include/beamgyro/import.h"
 #include "include/beamgyro/set.h"
 #include "include/beamgyro/train.h"
 #include "python/core/bindings.h"
@@ -116,6 +119,21 @@ Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> features(
   return internal::features_of(parsed, *recording);
 }
 
+/// Returns (features, labels, cycles, legs), a row for each block; of `every_s`
+/// 0 for each sample.
+py::tuple rows(const std::vector<std::string>& inputs, const std::string& name,
+               const SharedRecording& recording, double every_s) {
+  std::vector<internal::Input> parsed;
+  for (const std::string& input : inputs)
+    parsed.push_back(internal::parse_input(input));
+  const std::vector<internal::TrainingRun> runs = {{name, "", *recording}};
+  const internal::TrainingRows found = internal::training_rows(
+      internal::source_of(runs), parsed, {.seconds = every_s});
+  using Rows =
+      Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  return py::make_tuple(Rows(found.inputs), found.bias, found.cycle, found.leg);
+}
+
 using NamedRecordings = std::vector<std::pair<std::string, SharedRecording>>;
 
 std::vector<NamedRecording> named(const NamedRecordings& recordings) {
@@ -177,6 +195,20 @@ py::tuple train_set(const Model& model, const Set& set,
   }));
 }
 
+py::tuple import_with_map(const std::filesystem::path& log,
+                          const std::filesystem::path& map,
+                          const std::optional<std::string>& map_text,
+                          const std::string& axis,
+                          const std::filesystem::path& join) {
+  ImportedRecording found = long_call(py::none(), [=](const Progress&) {
+    const ImportOptions options = {.axis = axis, .join = join};
+    return map_text ? import_log(log, *map_text, map.string(), options)
+                    : import_log(log, map, options);
+  });
+  return py::make_tuple(std::make_shared<Recording>(std::move(found.recording)),
+                        found.text);
+}
+
 void bind_compensators(py::module_& core) {
   py::class_<RateCompensator, SharedCompensator>(core, "RateCompensator")
       .def_property_readonly("name", &RateCompensator::name)
@@ -202,11 +234,13 @@ void bind_compensation(py::module_& core) {
   core.def("open_compensator", &open);
   core.def("compensate", &compensate_recording);
   core.def("features", &features);
+  core.def("training_rows", &rows);
   py::class_<Model>(core, "Model")
       .def_static("read", &Model::read)
       .def_static("parse", &Model::parse)
       .def_property_readonly("text", &Model::text)
       .def_property_readonly("name", &Model::name);
+  core.def("import_log", &import_with_map);
   core.def("train_files", &train_files);
   core.def("train_recordings", &train_recordings);
   core.def("train_set", &train_set);

@@ -6,17 +6,21 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "include/beamgyro/campaign.h"
+#include "include/beamgyro/card.h"
 #include "include/beamgyro/curves.h"
 #include "include/beamgyro/device.h"
 #include "include/beamgyro/scenario.h"
 #include "include/beamgyro/set.h"
 #include "include/beamgyro/simulate.h"
+#include "include/beamgyro/variants.h"
 #include "python/core/bindings.h"
 #include "python/core/long_call.h"
 
@@ -104,6 +108,28 @@ py::tuple simulate_scenario(const Scenario& scenario, bool stop_on_unlock,
   return with_warnings(std::move(run.recording), run.warnings);
 }
 
+/// Returns (recording, warnings with the number of their runs). The columns of
+/// the recording have the values of all runs, run after run; its times are
+/// those of one.
+py::tuple simulate_all(const Scenario& scenario,
+                       const std::vector<VariedValues>& axes,
+                       const std::vector<std::string>& variables, unsigned jobs,
+                       const py::object& on_progress) {
+  VariantRuns runs = long_call(on_progress, [=](const Progress& progress) {
+    return simulate_variants(
+        scenario, axes,
+        {.jobs = jobs, .variables = variables, .progress = progress});
+  });
+  py::list warnings;
+  for (const VariantWarning& warning : runs.warnings)
+    warnings.append(py::make_tuple(warning.text, warning.runs));
+  auto all = std::make_shared<Recording>();
+  all->time = std::move(runs.time);
+  all->status = std::move(runs.status);
+  all->columns = std::move(runs.columns);
+  return py::make_tuple(std::move(all), warnings);
+}
+
 std::vector<std::string> simulate_into(const Scenario& scenario,
                                        const std::filesystem::path& path,
                                        bool stop_on_unlock,
@@ -152,13 +178,34 @@ py::list verify(const Set& set, const py::object& on_progress) {
 
 py::tuple generate_set(const Campaign& campaign,
                        const std::filesystem::path& directory, unsigned jobs,
-                       bool resume, const py::object& on_progress) {
+                       bool resume,
+                       const std::pair<std::uint32_t, std::uint32_t>& shard,
+                       const py::object& on_progress) {
   GenerationOutcome outcome =
       long_call(on_progress, [=](const Progress& progress) {
         return generate(campaign, directory,
-                        {.jobs = jobs, .resume = resume, .progress = progress});
+                        {.jobs = jobs,
+                         .resume = resume,
+                         .progress = progress,
+                         .shard = shard.first,
+                         .shards = shard.second});
       });
-  return py::make_tuple(outcome.failures, std::move(outcome.warnings));
+  return py::make_tuple(outcome.failures, std::move(outcome.warnings),
+                        outcome.is_whole);
+}
+
+std::vector<std::string> write_set_card(
+    const Set& set, const std::map<std::string, std::string>& texts,
+    const py::object& on_progress) {
+  return long_call(on_progress, [=](const Progress& progress) {
+    SetCardOptions options{.license = texts.at("license"),
+                           .url = texts.at("url"),
+                           .creator = texts.at("creator"),
+                           .date = texts.at("date"),
+                           .version = texts.at("version"),
+                           .progress = progress};
+    return write_card(set, options);
+  });
 }
 
 Campaign parse_campaign(const PathsAndTexts& files,
@@ -206,6 +253,7 @@ void bind_simulation(py::module_& core) {
       .def_property_readonly("seed", &Scenario::seed);
   core.def("simulate", &simulate_scenario);
   core.def("simulate_to_file", &simulate_into);
+  core.def("simulate_variants", &simulate_all);
   py::class_<Campaign>(core, "Campaign")
       .def_static("read", &Campaign::read)
       .def_static("parse", &parse_campaign)
@@ -229,12 +277,14 @@ void bind_simulation(py::module_& core) {
            [](const Set& set, std::uint32_t device) {
              return part_name(set.part(device));
            })
-      .def("recording", &Set::recording,
+      .def("recording", &Set::recording, py::arg("run"), py::arg("device"),
+           py::arg("variables") = std::vector<std::string>(),
            py::call_guard<py::gil_scoped_release>())
       .def("slow_recording", &Set::slow_recording,
            py::call_guard<py::gil_scoped_release>())
       .def("parameters", &parameters_of)
-      .def("verify", &verify);
+      .def("verify", &verify)
+      .def("write_card", &write_set_card);
 }
 
 }  // namespace beamgyro::python

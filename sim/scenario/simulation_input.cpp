@@ -29,11 +29,16 @@ struct ReadScenario {
   ProfileTexts profiles;
 };
 
+ProfileTables tables_of(const ProfileTexts& texts) {
+  ProfileTables tables;
+  for (const auto& [path, text] : texts)
+    tables.emplace(path, parse_csv(text, path));
+  return tables;
+}
+
 ReadScenario scenario_of(const ConfigDocument& document,
                          const ProfileTexts& known) {
-  ProfileTables tables;
-  for (const auto& [path, text] : known)
-    tables.emplace(path, parse_csv(text, path));
+  ProfileTables tables = tables_of(known);
   // An error in a profile names its place in the scenario.
   ScenarioPlan scenario = read_scenario(document, &tables);
   document.reject_unknown_keys();
@@ -102,6 +107,26 @@ LoadedScenario load_scenario(const InputText& scenario, const InputText& device,
       ConfigDocument::parse(scenario.text, scenario.name, set);
   return loaded(scenario_of(document, profiles), document,
                 ConfigDocument::parse(device.text, device.name, set), set);
+}
+
+ScenarioVariants::ScenarioVariants(const InputText& scenario,
+                                   const InputText& device,
+                                   const ProfileTexts& profiles)
+    : scenario_document_(ConfigDocument::parse(scenario.text, scenario.name)),
+      device_document_(ConfigDocument::parse(device.text, device.name)),
+      tables_(tables_of(profiles)) {}
+
+void ScenarioVariants::read(const std::vector<std::string>& overrides) {
+  const Overrides set(overrides);
+  const ConfigDocument document = scenario_document_.with(set);
+  scenario_ = read_scenario(document, &tables_);
+  document.reject_unknown_keys();
+  std::vector<std::string> others = set.shared_or_unused();
+  has_new_device_ = others != device_overrides_;
+  if (!has_new_device_) return;
+  device_overrides_.reset();
+  device_ = device_of(device_document_.with(set), set).device;
+  device_overrides_ = std::move(others);
 }
 
 }  // namespace beamgyro::internal

@@ -3,11 +3,15 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "config/document.h"
+#include "dataset/log/csv_file.h"
 #include "sim/device/device.h"
 #include "sim/scenario/scenario.h"
+#include "sim/scenario/scenario_file.h"
 
 namespace beamgyro::internal {
 
@@ -49,5 +53,31 @@ LoadedScenario load_scenario(const std::filesystem::path& path,
 LoadedScenario load_scenario(const InputText& scenario, const InputText& device,
                              const std::vector<std::string>& overrides,
                              const ProfileTexts& profiles = {});
+
+/// A scenario and its device whose texts are parsed once, to be read with other
+/// overrides again and again. Each thread needs its own copy.
+class ScenarioVariants {
+ public:
+  /// `profiles` are the texts of all files that the scenario names.
+  ScenarioVariants(const InputText& scenario, const InputText& device,
+                   const ProfileTexts& profiles);
+
+  /// Reads the plan of the scenario and the device with these overrides. Throws
+  /// as load_scenario().
+  void read(const std::vector<std::string>& overrides);
+
+  const ScenarioPlan& scenario() const { return scenario_; }
+  const DeviceParameters& device() const { return *device_; }
+  /// Whether the last read() gave another device than the one before.
+  bool has_new_device() const { return has_new_device_; }
+
+ private:
+  ConfigDocument scenario_document_, device_document_;
+  ProfileTables tables_;
+  ScenarioPlan scenario_;
+  std::optional<DeviceParameters> device_;
+  std::optional<std::vector<std::string>> device_overrides_;  // of `device_`
+  bool has_new_device_ = false;
+};
 
 }  // namespace beamgyro::internal

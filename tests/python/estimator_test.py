@@ -91,3 +91,22 @@ def test_what_is_wrong_is_named(sweeps, call, words):
     X, y = samples(sweeps[:1])
     with pytest.raises(ValueError, match=words):
         call(X, y)
+
+
+def test_legs_are_held_out_as_training_counts_them():
+    up = np.concatenate([np.linspace(0, 10, 50), np.linspace(10, 0, 30)])
+    time = np.arange(80.0)
+    X = np.c_[np.concatenate([time, time[:50]]),
+              np.concatenate([up, up[:50]])]
+    parts = [held_out for _, held_out in bg.LegSplit().split(X)]
+    assert bg.LegSplit().get_n_splits(X) == 3
+    # the turn belongs to the first leg, the second run is a leg of its own
+    assert [(part[0], part[-1]) for part in parts] == [
+        (0, 50), (51, 79), (80, 129)]
+    for fitted, held_out in bg.LegSplit().split(X):
+        assert sorted([*fitted, *held_out]) == list(range(130))
+    swapped = bg.LegSplit(time=1, temperature=0).split(X[:, ::-1])
+    assert [held_out.tolist() for _, held_out in swapped] == [
+        part.tolist() for part in parts]
+    with pytest.raises(ValueError, match="holds one leg"):
+        list(bg.LegSplit().split(X[:50]))

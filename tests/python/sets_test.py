@@ -109,3 +109,24 @@ def test_sensitivity_is_that_of_the_command(campaign, tmp_path):
     indices = found.figures["bias_pp_deg_per_s"]
     assert indices[0]["total"] >= indices[-1]["total"]
     assert indices[0]["key"] in found._repr_html_()
+
+
+def test_tasks_make_the_set_together(campaign, made, tmp_path):
+    folder = tmp_path / "shared"
+    assert bg.generate(campaign, folder, devices=6, shard=(2, 2),
+                       progress=False) is None
+    whole = bg.generate(campaign, folder, devices=6, shard=(1, 2),
+                        progress=False)
+    assert whole is not None and len(whole) == 6
+    for path in made.directory.rglob("*"):
+        if path.is_file():
+            twin = folder / path.relative_to(made.directory)
+            assert twin.read_bytes() == path.read_bytes()
+
+
+@pytest.mark.parametrize("shard", [(0, 2), (3, 2), (1,), "1/2", 1, (1, 2, 3),
+                                   (1, 1.5)])
+def test_what_is_no_task_is_said(campaign, tmp_path, shard):
+    with pytest.raises(ValueError, match="shard"):
+        bg.generate(campaign, tmp_path / "set", shard=shard, progress=False)
+    assert not (tmp_path / "set").exists()

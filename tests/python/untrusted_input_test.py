@@ -217,7 +217,7 @@ def test_what_no_number_can_mean_is_refused(run, call, words):
 
 def test_runs_without_a_powered_sample_make_no_rows():
     off = bg.run(WARM_UP, set={"duration_s": 20, "power.on_s": [15.0]})
-    with pytest.raises(ValueError, match="runs: have no sample that is"):
+    with pytest.raises(ValueError, match="run 1: no sample is powered, locked"):
         bg.training_rows(off.isel(time=slice(0, 100)))
     rows, _ = bg.training_rows(off)
     assert len(rows) == int((off.status == 0).sum()) <= 50

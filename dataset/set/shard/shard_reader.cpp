@@ -100,7 +100,8 @@ class ShardFile::File {
   const ShardHead& head() const { return head_; }
   const std::vector<DeviceRow>& rows() const { return rows_; }
 
-  Recording read(std::uint32_t position, bool slow) const {
+  Recording read(std::uint32_t position, bool slow,
+                 const std::vector<std::string>& variables) const {
     Recording recording;
     const std::size_t step = slow ? head_.slow_step : 1;
     std::vector<std::byte> status =
@@ -111,6 +112,8 @@ class ShardFile::File {
     }
     for (const SetVariable& about : head_.variables) {
       if (about.slow != slow) continue;
+      if (!variables.empty() && !std::ranges::count(variables, about.name))
+        continue;
       recording.columns.push_back(
           {about.name, about.units, about.long_name, about.role,
            decoded_values(about, row_bytes(about.name, file_type(about.storage),
@@ -303,22 +306,24 @@ const DeviceRow& ShardFile::row(std::uint32_t position) const {
   return file_->rows().at(position);
 }
 
-Recording ShardFile::recording(std::uint32_t position) const {
-  return read(position, false);
+Recording ShardFile::recording(
+    std::uint32_t position, const std::vector<std::string>& variables) const {
+  return read(position, false, variables);
 }
 
 Recording ShardFile::slow_recording(std::uint32_t position) const {
-  return read(position, true);
+  return read(position, true, {});
 }
 
-Recording ShardFile::read(std::uint32_t position, bool slow) const {
+Recording ShardFile::read(std::uint32_t position, bool slow,
+                          const std::vector<std::string>& variables) const {
   const DeviceRow& about = row(position);
   if (!about.failure.empty())
     reject(path_, fmt::format("device {} has no values: {}",
                               head().first_device + position, about.failure));
   const QuietHdf5 quiet;
   try {
-    return file_->read(position, slow);
+    return file_->read(position, slow, variables);
   } catch (const Hdf5Error& error) {
     reject_hdf5_file(path_, error);
   }

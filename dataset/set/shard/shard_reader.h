@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "dataset/files/open_file.h"
 #include "dataset/recording/recording.h"
@@ -39,9 +40,11 @@ class ShardFile {
   const DeviceRow& row(std::uint32_t position) const;
 
   /// Reads one device without its slow variables, in the form of
-  /// read_recording(). Reads nothing of the others. Throws
-  /// std::invalid_argument for a device that failed.
-  Recording recording(std::uint32_t position) const;
+  /// read_recording(). Reads nothing of the others, and of `variables`, where
+  /// there are any, only these. Throws std::invalid_argument for a device that
+  /// failed.
+  Recording recording(std::uint32_t position,
+                      const std::vector<std::string>& variables = {}) const;
 
   /// The same for the slow variables, over truth_time.
   Recording slow_recording(std::uint32_t position) const;
@@ -49,7 +52,8 @@ class ShardFile {
  private:
   class File;
 
-  Recording read(std::uint32_t position, bool slow) const;
+  Recording read(std::uint32_t position, bool slow,
+                 const std::vector<std::string>& variables) const;
 
   std::filesystem::path path_;
   std::unique_ptr<File> file_;
