@@ -19,6 +19,7 @@
 
 #include "api/checked_number.h"
 #include "api/compensators.h"
+#include "api/export_parts.h"
 #include "compensation/export/export_c.h"
 #include "compensation/export/export_ekf.h"
 #include "compensation/export/export_parameters.h"
@@ -48,36 +49,6 @@ std::string file_of(const ExportRequest& asked, std::size_t k) {
   return asked.compensators[k].content().path();
 }
 
-// Runs `work` and puts the name of the compensator's file before an error.
-template <class Work>
-auto of_file(const std::string& file, Work work) {
-  try {
-    return work();
-  } catch (const std::invalid_argument& error) {
-    throw OptionError(file + ": ", error);
-  }
-}
-
-// One axis for each compensator.
-std::vector<char> axes_of(const ExportRequest& asked) {
-  const std::size_t count = asked.compensators.size();
-  std::vector<char> axes;
-  for (const std::string& axis : asked.options.axes) axes.push_back(axis[0]);
-  if (axes.empty() && count == 1) axes = {'z'};
-  if (axes.empty() && count == 3) axes = {'x', 'y', 'z'};
-  if (axes.size() != count)
-    throw option_error("{}: {} axes for {} compensators; one each, such as {}",
-                       NamedOption{"axes"}, axes.size(), count,
-                       NamedOption{"axes", "x,y"});
-  for (std::size_t k = 1; k < count; ++k)
-    if (std::find(axes.begin(), axes.begin() + static_cast<std::ptrdiff_t>(k),
-                  axes[k]) != axes.begin() + static_cast<std::ptrdiff_t>(k))
-      throw option_error(
-          "{}: {} twice; each compensator has an axis of its own",
-          NamedOption{"axes"}, axes[k]);
-  return axes;
-}
-
 void warn_of_ranges(const std::vector<AutopilotAxis>& axes,
                     std::vector<std::string>& warnings) {
   const TemperatureRange common = common_range(axes);
@@ -93,7 +64,8 @@ void warn_of_ranges(const std::vector<AutopilotAxis>& axes,
 
 void parameter_texts(const ExportRequest& asked, const std::string& name,
                      ExportResult& result) {
-  const std::vector<char> places = axes_of(asked);
+  const std::vector<char> places =
+      axes_of(asked.options.axes, asked.compensators.size(), "compensators");
   std::vector<AutopilotAxis> axes;
   for (std::size_t k = 0; k < places.size(); ++k) {
     const FittedCompensator& compensator = compensator_of(asked, k);
@@ -159,7 +131,8 @@ void ekf_files(const ExportRequest& asked, const std::string& name,
   const Compensator& own = asked.compensators[0];
   const FittedCompensator& compensator = own.content().compensator;
   EkfExport given{.name = name,
-                  .axis = axes_of(asked)[0],
+                  .axis = axes_of(asked.options.axes, asked.compensators.size(),
+                                  "compensators")[0],
                   .compensator = {own.name(), sha256(own.text())},
                   .rest = {},
                   .settings = {},
@@ -219,10 +192,7 @@ void require_words(const ExportRequest& asked) {
   if (std::ranges::count(kFormats, asked.format) == 0)
     throw std::invalid_argument(fmt::format(
         "format \"{}\"; expected {}", asked.format, fmt::join(kFormats, ", ")));
-  for (const std::string& axis : asked.options.axes)
-    if (axis != "x" && axis != "y" && axis != "z")
-      throw std::invalid_argument(
-          fmt::format("axis \"{}\"; expected x, y or z", axis));
+  require_axes(asked.options.axes);
   if (asked.compensators.empty() || asked.compensators.size() > 3)
     throw std::invalid_argument(
         fmt::format("{} compensators; expected one, or up to three",

@@ -9,17 +9,13 @@
 #include <stdexcept>
 #include <vector>
 
+#include "compensation/export/parameter_lines.h"
 #include "compensation/methods/autopilot_methods.h"
 #include "config/option_message.h"
 #include "config/units.h"
 
 namespace beamgyro::internal {
 namespace {
-
-constexpr std::size_t kCubicTerms = 4;  // of a cubic
-constexpr char kAxes[] = {'x', 'y', 'z'};
-
-char upper(char axis) { return static_cast<char>(axis - 'x' + 'X'); }
 
 // Returns what the parameters cannot represent of this compensator, or an empty
 // text.
@@ -47,10 +43,12 @@ BiasModel as_polynomial(const BiasModel& bias) {
   return bias;
 }
 
-// c_0 ... c_3 about the reference [rad/s/K^k] of the axis called `name`; 0 of
-// one that is not given.
-std::vector<double> coefficients(const std::vector<AutopilotAxis>& axes,
-                                 char name, double reference) {
+}  // namespace
+
+char upper_axis(char axis) { return static_cast<char>(axis - 'x' + 'X'); }
+
+std::vector<double> cubic_coefficients(const std::vector<AutopilotAxis>& axes,
+                                       char name, double reference) {
   const auto found = std::ranges::find(axes, name, &AutopilotAxis::axis);
   std::vector<double> c;
   if (found != axes.end()) c = coefficients_about(found->cubic, reference);
@@ -59,18 +57,38 @@ std::vector<double> coefficients(const std::vector<AutopilotAxis>& axes,
   return c;
 }
 
-std::string heading(const char* what, const std::vector<AutopilotAxis>& axes) {
+std::string parameter_heading(const char* what,
+                              const std::vector<AutopilotAxis>& axes) {
   std::string text = fmt::format("# {} of", what);
   for (const AutopilotAxis& axis : axes) text += fmt::format(" {}", axis.axis);
   return text;
 }
 
-// Returns a number with the digits of single precision.
-std::string number(double value) {
+std::string single_precision(double value) {
   return fmt::format("{:.9g}", static_cast<float>(value));
 }
 
-}  // namespace
+void add_line(std::string& text, const std::string& name,
+              const std::string& value) {
+  text += fmt::format("{},{}\n", name, value);
+}
+
+void require_ardupilot_gyro(const AutopilotGyro& gyro) {
+  if (gyro.instance < 1 || gyro.instance > 3)
+    throw std::invalid_argument(fmt::format(
+        "instance {}: ArduPilot has the gyros 1 to 3", gyro.instance));
+}
+
+TemperatureRange ardupilot_range(const std::vector<AutopilotAxis>& axes) {
+  const TemperatureRange range = common_range(axes);
+  if (range.lowest < -70.0 || range.highest > 80.0 ||
+      range.highest - range.lowest < kArduPilotSpan)
+    throw std::invalid_argument(fmt::format(
+        "the temperatures {:.2f} to {:.2f} degC that were seen are none that "
+        "ArduPilot accepts: within -70 to 80 degC and {} K apart",
+        range.lowest, range.highest, kArduPilotSpan));
+  return range;
+}
 
 BiasModel autopilot_cubic(const FittedCompensator& c, bool fit_cubic) {
   const std::string reason = obstacle(c);
@@ -113,7 +131,7 @@ std::string px4_parameters(const std::vector<AutopilotAxis>& axes,
   // belong to the rounded value.
   const auto reference =
       static_cast<float>(0.5 * (range.lowest + range.highest));
-  std::string text = heading("PX4 thermal compensation", axes) +
+  std::string text = parameter_heading("PX4 thermal compensation", axes) +
                      "; set the CAL_GYRO offsets to 0\n";
   const auto row = [&](const std::string& name, const std::string& value,
                        int type) {
@@ -122,51 +140,45 @@ std::string px4_parameters(const std::vector<AutopilotAxis>& axes,
   const std::string prefix = fmt::format("TC_G{}_", gyro.instance);
   row("TC_G_ENABLE", "1", 6);
   row(prefix + "ID", std::to_string(gyro.device_id), 6);
-  row(prefix + "TREF", number(reference), 9);
-  row(prefix + "TMIN", number(range.lowest), 9);
-  row(prefix + "TMAX", number(range.highest), 9);
+  row(prefix + "TREF", single_precision(reference), 9);
+  row(prefix + "TMIN", single_precision(range.lowest), 9);
+  row(prefix + "TMAX", single_precision(range.highest), 9);
   for (std::size_t k = 0; k < kCubicTerms; ++k)
-    for (const char axis : kAxes)
+    for (const char axis : kAutopilotAxes)
       row(fmt::format("{}X{}_{}", prefix, k, axis - 'x'),
-          number(coefficients(axes, axis, reference)[k]), 9);
+          single_precision(cubic_coefficients(axes, axis, reference)[k]), 9);
   return text;
 }
 
 std::string ardupilot_parameters(const std::vector<AutopilotAxis>& axes,
                                  const AutopilotGyro& gyro) {
+  require_ardupilot_gyro(gyro);
   const int n = gyro.instance;
-  if (n < 1 || n > 3)
-    throw std::invalid_argument(
-        fmt::format("instance {}: ArduPilot has the gyros 1 to 3", n));
-  const TemperatureRange range = common_range(axes);
-  if (range.lowest < -70.0 || range.highest > 80.0 ||
-      range.highest - range.lowest < kArduPilotSpan)
-    throw std::invalid_argument(fmt::format(
-        "the temperatures of training, {:.2f} to {:.2f} degC, are none that "
-        "ArduPilot accepts: within -70 to 80 degC and {} K apart",
-        range.lowest, range.highest, kArduPilotSpan));
+  const TemperatureRange range = ardupilot_range(axes);
   // Clamped as the autopilot does, so that the offset belongs to the value that
   // it uses.
   const double at = std::clamp(static_cast<float>(kArduPilotReference),
                                static_cast<float>(range.lowest),
                                static_cast<float>(range.highest));
-  std::string text = heading("ArduPilot temperature calibration", axes) + "\n";
+  std::string text =
+      parameter_heading("ArduPilot temperature calibration", axes) + "\n";
   const auto line = [&](const std::string& name, const std::string& value) {
-    text += fmt::format("{},{}\n", name, value);
+    add_line(text, name, value);
   };
   const std::string calibration = fmt::format("INS_TCAL{}_", n);
   line(calibration + "ENABLE", "1");
-  line(calibration + "TMIN", number(range.lowest));
-  line(calibration + "TMAX", number(range.highest));
+  line(calibration + "TMIN", single_precision(range.lowest));
+  line(calibration + "TMAX", single_precision(range.highest));
   for (std::size_t k = 1; k < kCubicTerms; ++k)
-    for (const char axis : kAxes)
-      line(fmt::format("{}GYR{}_{}", calibration, k, upper(axis)),
-           number(1e6 * coefficients(axes, axis, kArduPilotReference)[k]));
-  line(fmt::format("INS_GYR{}_CALTEMP", n), number(at));
-  for (const char axis : kAxes)
+    for (const char axis : kAutopilotAxes)
+      line(fmt::format("{}GYR{}_{}", calibration, k, upper_axis(axis)),
+           single_precision(
+               1e6 * cubic_coefficients(axes, axis, kArduPilotReference)[k]));
+  line(fmt::format("INS_GYR{}_CALTEMP", n), single_precision(at));
+  for (const char axis : kAutopilotAxes)
     line(fmt::format("INS_GYR{}OFFS_{}", n == 1 ? "" : std::to_string(n),
-                     upper(axis)),
-         number(coefficients(axes, axis, at)[0]));
+                     upper_axis(axis)),
+         single_precision(cubic_coefficients(axes, axis, at)[0]));
   return text;
 }
 

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// Compensators as C source, autopilot parameters and noise of filters.
+/// Compensators as C source, autopilot parameters and noise of filters; devices
+/// as parameters of simulators.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "beamgyro/compensator.h"
+#include "beamgyro/device.h"
 
 namespace beamgyro {
 
@@ -36,6 +39,8 @@ struct ExportedFile {
 struct ExportResult {
   std::vector<ExportedFile> files;
   std::vector<std::string> warnings;
+  /// What the files say and leave out, with figures; comments in them, too.
+  std::vector<std::string> remarks = {};
 };
 
 /// Returns the files that `beamgyro export` writes. `format` is "c", "px4",
@@ -45,6 +50,36 @@ struct ExportResult {
 ExportResult export_files(const std::vector<Compensator>& compensators,
                           const std::string& format,
                           const ExportOptions& options = {});
+
+struct SimulatorExportOptions {
+  std::string name = {};  ///< of the files; else of the device or compensator
+  /// Of the simulator's gyro for each device: "x", "y", "z"; z for one, x, y, z
+  /// for three without.
+  std::vector<std::string> axes = {};
+  bool fit_cubic = false;            ///< as in ExportOptions
+  std::optional<int> instance = {};  ///< ardupilot-sitl: 1 to 3; 1 without
+  /// ardupilot-sitl: of the chamber in which the devices are swept;
+  /// -40 to 50 without
+  std::optional<std::pair<double, double>> range_degC = {};
+  /// Still air at power-on; 25 without
+  std::optional<double> temperature_degC = {};
+  std::optional<double> update_rate_Hz = {};  ///< sdf; 100 without
+};
+
+/// Returns the files that `beamgyro export` writes for simulators
+/// (docs/reference/simulator_parameters.md). `format` is
+/// - "ardupilot-sitl": up to three devices, one for each axis, or as many
+///   compensators, or both. The drift of the devices becomes the disturbance,
+///   the compensators become the compensation; either stands for the other
+///   where it is not given;
+/// - "sdf": one device and no compensator.
+/// Throws std::invalid_argument for an option that the format does not have,
+/// for a range that the parameters cannot hold and for a compensator that is
+/// no cubic, and as simulate().
+ExportResult export_for_simulator(const std::vector<Device>& devices,
+                                  const std::vector<Compensator>& compensators,
+                                  const std::string& format,
+                                  const SimulatorExportOptions& options = {});
 
 /// Writes up to 16 files to a directory. The directory and those above it are
 /// made where they are missing. Files that are there keep their contents until
