@@ -42,7 +42,7 @@ def block_means(file, *names):
 
 def titled(axes, title, about):
     """A title, and in smaller letters what was run and whether with noise."""
-    axes.set_title(title, pad=19)
+    axes.set_title(title, pad=19 + 12 * about.count("\n"))
     axes.text(0, 1.02, about, transform=axes.transAxes, fontsize=8.5,
               color=WORDS, va="bottom")
 
@@ -154,7 +154,8 @@ def fit(folder, method, title, name):
     top.plot(temperature, rate - residual, color=BLUE, lw=1.3, label=title)
     titled(top, f"Virtual gyro at rest: {title}",
            "held-out day of soaks, run without noise; the fit knows other days, "
-           "with noise")
+           "with noise.\nSpikes of what is left: after a step of the chamber the "
+           "beam lags behind the sensor")
     top.set(ylabel="rate at rest [°/s]", xticklabels=[])
     top.legend(loc="best")
     mean, sigma = residual.mean(), residual.std()

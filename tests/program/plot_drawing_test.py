@@ -19,6 +19,7 @@ sys.path.insert(0, str(PROGRAM.parent / "python"))
 from beamgyro import plots  # noqa: E402  (where it is comes first)
 from beamgyro.plots import style  # noqa: E402
 from beamgyro.plots.envelope import bins_of, envelope, spans  # noqa: E402
+from beamgyro.plots.validation import draw_figure  # noqa: E402
 
 MODELS = SCENARIOS / "models"
 
@@ -123,7 +124,13 @@ class Recordings(ProgramTest):
             with self.subTest(devices):
                 self.ok("generate", SCENARIOS / "campaigns/small.toml",
                         "--devices", devices, "-o", devices)
-                left = plots.plot(self.dir / devices).axes[0]
+                figure = plots.plot(self.dir / devices)
+                figure.draw_without_rendering()
+                left = figure.axes[0]
+                legend = left.get_legend().get_window_extent()
+                inside = left.get_window_extent()
+                self.assertGreater(legend.x0, inside.x0)
+                self.assertLess(legend.x1, inside.x1)
                 self.assertEqual(len(left.lines), lines)
                 self.assertEqual(len(left.collections), bands)
 
@@ -164,6 +171,38 @@ class Validations(ProgramTest):
         labels = [axes.get_xlabel() for axes in figure.axes]
         self.assertIn("Φ(residual / σ)", labels)
 
+    def test_the_title_says_of_what_and_on_what(self):
+        self.cubic_of_a_ramp("train")
+        for number in range(3):
+            self.run_scenario(f"run{number}", text=ramp(seed=5 + number))
+        for runs, says in [(["run0.h5"], "on run0.h5"),
+                           (["run0.h5", "run1.h5"], "on run0.h5 and run1.h5"),
+                           (["run0.h5", "run1.h5", "run2.h5"],
+                            "on run0.h5 and 2 more runs")]:
+            self.ended("validate", "c.json", *runs, "--json", "v.json",
+                       allowed=(0, 3))
+            result = json.loads((self.dir / "v.json").read_text())
+            title = plots.plot_validation(result)._suptitle.get_text()
+            self.assertEqual(title.split("\n")[0],
+                             f"{result['verdict'].upper()}: c.json {says}")
+        result["provenance"] |= {"device": "mine.toml",
+                                 "qualification": "turns.toml"}
+        figure = plots.plot_validation(result)
+        self.assertIn(": c.json on mine.toml", figure._suptitle.get_text())
+        self.assertIn("turns.toml with the virtual gyro mine.toml",
+                      " ".join(figure.texts[-1].get_text().split()))
+
+    def test_an_allan_deviation_has_an_axis_of_data_sheets(self):
+        axis = {"label": "x", "unit": "s", "scale": "log"}
+        shown = {"title": "t", "kind": "points", "x": axis,
+                 "y": {**axis, "unit": "deg/s"},
+                 "series": [{"name": "after", "x": [1.0, 10.0],
+                             "y": [0.1, 0.01]}]}
+        for name, sides in (("allan", ["[°/h]"]), ("other", [])):
+            axes = style.new_figure(3.0).subplots()
+            draw_figure(axes, {"id": name, **shown})
+            self.assertEqual([side.get_ylabel() for side in axes.child_axes],
+                             sides)
 
     def test_every_panel_says_what_its_curves_are(self):
         self.cubic_of_a_ramp("train")

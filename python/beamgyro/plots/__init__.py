@@ -28,6 +28,8 @@ __all__ = ["PlotError", "kind_of", "plot", "plot_allan", "plot_compensator",
            "plot_plan", "plot_recording", "plot_sensitivity", "plot_table",
            "plot_validation", "save", "save_each"]
 
+# How this door spells it: `beamgyro plot` runs the package under another name.
+COMPARING = "compare=True" if __name__ == "beamgyro.plots" else "--compare"
 CHARACTERISTIC = "beamgyro-characteristic"  # of the dataset of characterise
 Path = Union[str, "os.PathLike[str]"]
 
@@ -79,12 +81,12 @@ def _require_comparable(paths: Sequence[Any], kinds: Sequence[str],
     if len(paths) == 1:
         if compare:
             raise PlotError(f"{paths[0]}: one file is compared with nothing; "
-                            "expected two or more with compare=True "
-                            "(--compare)")
+                            "expected two or more with "
+                            f"{COMPARING}")
         return
     if not compare:
         raise PlotError(f"{paths[1]}: a second file for one picture; expected "
-                        "compare=True (--compare), which draws files of one "
+                        f"{COMPARING}, which draws files of one "
                         "kind over each other")
     first = KINDS[kinds[0]]
     for path, kind in zip(paths[1:], kinds[1:]):

@@ -157,14 +157,14 @@ def draw(figure: Figure, results: Sequence[Mapping[str, Any]]) -> None:
                     (1, 2, 5) if max(shown) < 100 * min(shown) else ())
     axes.set_ylim(min(shown) / 3, max(shown) * 3)
     if units[0] == RATE:
-        _axis_per_hour(axes)
+        axis_per_hour(axes)
     if len(results) == 1:
         _terms(axes, results[0], kinds[0])
     style.legend_above(axes, 3)
     _title(figure, results, names)
 
 
-def _axis_per_hour(axes: Axes) -> None:
+def axis_per_hour(axes: Axes) -> None:
     """As data sheets have it, at the right."""
     right = axes.secondary_yaxis("right", functions=(lambda v: v * HOUR,
                                                      lambda v: v / HOUR))

@@ -201,6 +201,8 @@ def _population(figure: Figure, one: Document) -> None:
                             color=style.AFTER, alpha=0.2, label="±2σ")
         row[0].fill_between(T, middle - sd, middle + sd, lw=0,
                             color=style.AFTER, alpha=0.35, label="±1σ")
+        for end in (-2, 2):  # seen in grey, too
+            row[0].plot(T, middle + end * sd, color=style.AFTER, lw=0.6)
         row[0].plot(T, middle, color=style.AFTER, label="mean of the devices")
         for k, mode in enumerate(strongest):
             row[1].plot(T, parts[mode], color=style.COLORS[k],

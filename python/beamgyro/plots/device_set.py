@@ -182,7 +182,7 @@ def draw(figure: Figure, devices: DeviceSet) -> None:
         _histogram(row[1], run)
         row[0].set_title(f"run {style.shortened(run.name, LONGEST_NAME)}")
         if run.rate:
-            row[0].legend(loc="upper right", ncols=4)
+            row[0].legend(loc="upper right", ncols=2, fontsize=8)
     counts = ", ".join(f"{count:,} {words}" for words, count in
                        devices.parts.items() if count)
     words = f"{devices.devices:,} devices ({counts})"
@@ -190,6 +190,8 @@ def draw(figure: Figure, devices: DeviceSet) -> None:
         words += f", {devices.failed:,} failed"
     if devices.read < devices.devices - devices.failed:
         words += f"; drawn: {devices.read}, evenly over the set"
+    if any(len(run.rate) >= FEWEST_FOR_SHARES for run in devices.runs):
+        words += "; bands and lines at each time, which no device follows"
     if devices.more_runs:
         words += f"; not drawn: runs {', '.join(devices.more_runs)}"
     style.titled(figure, f"Set {devices.name}", words)
@@ -210,7 +212,7 @@ def _spread(axes: Axes, run: SetRun) -> None:
                       label="each device" if number == 0 else None)
     else:
         axes.plot(time, low, color=style.GREY, lw=0.8)
-        axes.plot(time, high, color=style.GREY, lw=0.8, label="lowest and highest")
+        axes.plot(time, high, color=style.GREY, lw=0.8, label="lowest and highest of all")
         axes.fill_between(time, q5, q95, color=style.AFTER, alpha=0.2, lw=0,
                           label="90 of 100")
         axes.fill_between(time, q25, q75, color=style.AFTER, alpha=0.35,

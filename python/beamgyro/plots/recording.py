@@ -236,7 +236,7 @@ def _rate(axes: Axes, run: Run, scale: float) -> None:
 def _true_bias(axes: Axes, run: Run, scale: float) -> None:
     if "true_bias" in run:
         _band(axes, run, run.values["true_bias"], scale, style.TRUTH,
-              "true bias: without noise", ls=(0, (4, 2)), lw=1.0)
+              "true bias: without noise and turn-on offset", ls=(0, (4, 2)), lw=1.0)
 
 
 def _error(axes: Axes, run: Run, scale: float) -> None:

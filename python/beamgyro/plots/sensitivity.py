@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from typing import Any, Iterator, Mapping, Sequence
 
@@ -50,7 +51,8 @@ def _panel(axes: Axes, figure: Mapping[str, Any], most: int) -> None:
     axes.set_xlim(left=0)
     axes.grid(axis="y", visible=False)
     axes.set_xlabel("share of the variance")
-    words = f"{figure['of']}: {style.spoken(figure['meaning'])}"
+    of = re.sub(r"^ln ", "logarithm of ", figure["of"])
+    words = f"{of}: {style.spoken(figure['meaning'])}"
     axes.set_title(textwrap.fill(words, LETTERS_OF_TITLE))
     axes.legend(loc="lower right")
 

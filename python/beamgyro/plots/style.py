@@ -149,6 +149,7 @@ def spoken(text: str) -> str:
     for written, printed in [(r"\bdegC\b", "°C"), (r"\bdegree\b", "°"),
                              (r"\bdeg\b", "°"), (r"\bm/s2\b", "m/s²"),
                              (r"\b1-sigma\b", "1σ"),
+                             (r"(?<=[\s(])-(?=\d)", "−"),
                              (r"\bPhi\((.*?)sigma\)", r"Φ(\1σ)"),
                              (r"sqrt\((\w)\)", r"√\1")]:
         text = re.sub(written, printed, text)

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 
 from . import style
+from .allan import axis_per_hour
 from .documents import (FLAG, NAME, NOT_NEGATIVE, NUMBER, TEXT, both, either,
                         maybe, record, rows, WrongValue)
 
@@ -59,7 +60,8 @@ SHAPE = record({
     {"population": maybe(record({"devices": NOT_NEGATIVE,
                                  "passed": NOT_NEGATIVE})),
      # These are not drawn, but a result without them is not whole.
-     "metrics": rows(record({})), "provenance": record({}),
+     "metrics": rows(record({})), "runs": rows(record({"name": TEXT})),
+     "provenance": record({}, {"device": TEXT, "qualification": TEXT}),
      "sigma": record({}), "warnings": rows(TEXT)})
 
 
@@ -118,6 +120,8 @@ def draw_figure(axes: Axes, figure: Mapping[str, Any]) -> None:
                                                    axis["unit"] or "")})
         if axis["scale"] == "log":
             style.log_scale(getattr(axes, f"{name}axis"))
+    if figure["id"] == "allan":
+        axis_per_hour(axes)
 
 
 def each(result: Mapping[str, Any]) -> Iterator[tuple[str, Figure]]:
@@ -221,6 +225,19 @@ def _result_words(axes: Axes, words: str, x: float, y: float) -> None:
                   bbox={"fc": "white", "ec": "none", "pad": 1})
 
 
+def _title(result: Mapping[str, Any]) -> str:
+    """Verdict, compensator, and what it was judged on."""
+    title = f"{result['verdict'].upper()}: {result['compensator']['name']}"
+    device = (result.get("provenance") or {}).get("device")
+    runs = [run["name"] for run in result.get("runs") or []]
+    if device:
+        return f"{title} on {device}"
+    if not runs:
+        return title
+    others = f" and {len(runs) - 1} more runs" if len(runs) > 2 else ""
+    return f"{title} on {' and '.join(runs[:1 if others else 2])}{others}"
+
+
 def _words(result: Mapping[str, Any]) -> str:
     words = str(result["words"])
     failed = [check["name"] for check in result["checks"]
@@ -231,7 +248,12 @@ def _words(result: Mapping[str, Any]) -> str:
     if population and population.get("devices"):
         words += (f" {population['passed']} of {population['devices']} "
                   "devices pass.")
-    return textwrap.shorten(words, 240, placeholder=" …")
+    words = textwrap.shorten(words, 240, placeholder=" …")
+    provenance = result.get("provenance") or {}
+    if provenance.get("device") and provenance.get("qualification"):
+        words += (f" The runs of {provenance['qualification']} with the "
+                  f"virtual gyro {provenance['device']}.")
+    return words
 
 
 def _small(axes: Axes, figure: Mapping[str, Any]) -> None:
@@ -244,6 +266,9 @@ def _small(axes: Axes, figure: Mapping[str, Any]) -> None:
     axes.xaxis.label.set_fontsize(9)
     axes.yaxis.label.set_fontsize(9)
     axes.tick_params(labelsize=8)
+    for side in axes.child_axes:
+        side.yaxis.label.set_fontsize(9)
+        side.tick_params(labelsize=8)
     handles = _handles(axes, figure)
     if handles:
         _legend_within(axes, handles)
@@ -288,8 +313,7 @@ def _legend_within(axes: Axes, handles: Sequence[Any]) -> None:
 def draw(figure: Figure, result: Mapping[str, Any]) -> None:
     limits, shown = _judged(result), _shown(result)
     rows = -(-len(shown) // 2)
-    style.titled(figure, f"{result['verdict'].upper()}: "
-                 f"{result['compensator']['name']}", _words(result))
+    style.titled(figure, _title(result), _words(result))
     parts = [_limit_height(result)] * bool(limits) + \
         [LEGEND, ROW * rows] * bool(rows)
     if not parts:
