@@ -125,6 +125,8 @@ SoakBehaviour behaviour_of(const PlanOptions& options,
         row ? std::max(kAfterPowerOn, std::ceil(row->way / time.ramp))
             : kAfterPowerOn;
   found.noise = slow_noise(device.noise);
+  found.temperature_noise =
+      temperature_noise(device.temperature_sensor.resolution, found.rule);
   found.minutes = options.hold_min;
   return found;
 }
@@ -182,7 +184,9 @@ struct PlanStudy {
               [this](const Eigen::ArrayXd& T) {
                 return view.sensor_temperatures(T);
               },
-              {.range = range, .bias_only = asked.bias_only}),
+              {.range = range,
+               .bias_only = asked.bias_only,
+               .of_sweep = slow_noise(unit.content().device.noise)}),
         planner(model, chamber, time,
                 behaviour_of(asked, unit.content().device, range, time)) {}
 

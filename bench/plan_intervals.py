@@ -4,154 +4,186 @@
 
 plan_intervals.py SET CAMPAIGN.toml [--program FILE] [--out DIR] [--draws N]
                   [--size N] [--soaks N]... [--first-seed N] [--keep DIR]
-                  [--device DEVICE.toml]
+                  [--device DEVICE.toml] [--range LOW:HIGH]
+                  [--sweep SCENARIO.toml] [--grid K]
 
-SET is as planning.py wants it. Populations of --size devices of CAMPAIGN, each
-of another seed, are learned from the sweeps of
-scenarios/soak_sweep_sparse.toml; --keep names a folder of populations that are
-there already, SEED.json. Each plans --soaks soaks. What the plan, as many even
-soaks and straight lines between these leave of all devices of SET, in the
-median and in 95 %, and the quotient of the medians, is what the printed
-intervals should hold. Soaks have the bias and quadrature of the check, with the
-slow noise of nominal.toml as `plan` takes it; planning.py simulates them whole,
-with the lag of the beam, and agrees. Ends with DIR/intervals.json.
+SET is as planning.py wants it, of new units of CAMPAIGN, with a seed of its
+own. Populations of --size devices of CAMPAIGN, each of another seed, are
+learned from sweeps (scenarios/soak_sweep_sparse.toml) on a grid of --grid
+kelvins; --keep names a folder of populations that are there already, SEED.json.
+Each plans --soaks soaks. The plan and as many even soaks are simulated of all
+devices of SET, with all noise and the lag of the beam. What adaptation and
+straight lines leave of their checks, in the median and in 95 %, and the
+quotient of the medians, is what the printed intervals should hold. Ends with
+DIR/intervals.json.
 
 Of units that remember SET has a run "checkdown" as well, the same soaks from 50
-down to -40 degC: soaks that are reached from above show that one, and what is
-left is scored over both.
+down to -40 degC: what is left is scored over both.
 """
 
 import argparse
 import json
 import pathlib
+import shutil
 import subprocess
-import tomllib
 
 import numpy as np
 
 from planning import (CHAMBER, HOLD, LAST, NOMINAL, RAMP, ROOT, SCENARIOS,
-                      Population, quantiles, signals)
+                      Population, generate, points, quantiles, signals)
 
-RANGE = "-40:50"
-START = 25.0
-ROUNDS = 4  # of the noise, for each device
-NOISE = tomllib.loads(NOMINAL.read_text())["noise"]
+FINE = 0.05  # [K], of the table that curves are read from
 
 
-def learned(program, campaign, seed, size, out):
+def learned(seed, out, of):
     """A population of the sweeps of a few devices."""
-    head = campaign.read_text().split("[[run]]")[0]
-    lines = [line for line in head.splitlines()
-             if not line.startswith(("seed =", "device ="))]
-    device = next(line for line in head.splitlines()
-                  if line.startswith("device =")).split('"')[1]
-    tables = lines.index(next(line for line in lines if line.startswith("[")))
-    lines[tables:tables] = [
-        f"seed = {seed}", f'device = "{(campaign.parent / device).resolve()}"']
-    (out / "sweep.toml").write_text("\n".join(lines) + f"""
+    text = with_seed(of.campaign, seed).split("[[run]]")[0] + f"""
 [[run]]
 name = "sweep"
-scenario = "{SCENARIOS}/soak_sweep_sparse.toml"
+scenario = "{of.sweep.resolve()}"
 [output]
 variables = ["rate", "temperature", "quadrature", "true_rate"]
-""")
+"""
+    campaign, model = out / "sweep.toml", out / "population.toml"
+    campaign.write_text(text)
+    model.write_text((SCENARIOS / "population/population.toml").read_text()
+                     .replace("grid_K = 5", f"grid_K = {of.grid}"))
     folder, file = out / "sweeps" / str(seed), out / f"{seed}.json"
-    for words in [["generate", out / "sweep.toml", "-o", folder, "--devices",
-                   str(size)],
-                  ["train", folder, "--run", "sweep", "--model",
-                   SCENARIOS / "population/population.toml", "-o", file]]:
-        subprocess.run([program, *words, "-q"], check=True,
+    for words in [["generate", campaign, "-o", folder, "--devices",
+                   str(of.size), "--jobs", "1"],
+                  ["train", folder, "--run", "sweep", "--model", model, "-o",
+                   file]]:
+        subprocess.run([of.program, *words, "-q"], check=True,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     return file
 
 
-def planned(program, file, soaks, device, out):
-    subprocess.run([program, "plan", file, "--soaks", str(soaks), "--range",
-                    RANGE, "--device", device, "--json", out / "plan.json"],
-                   check=True, stdout=subprocess.DEVNULL,
+def with_seed(campaign, seed):
+    """The text of a campaign with another seed, which may lie anywhere."""
+    lines = []
+    for line in campaign.read_text().splitlines():
+        if line.startswith("seed ="):
+            line = f"seed = {seed}"
+        if line.startswith("device ="):
+            device = campaign.parent / line.split('"')[1]
+            line = f'device = "{device.resolve()}"'
+        lines.append(line)
+    return "\n".join(lines) + "\n"
+
+
+def planned(file, soaks, out, of):
+    subprocess.run([of.program, "plan", file, "--soaks", str(soaks),
+                    f"--range={of.range}", "--device", of.device, "--json",
+                    out / "plan.json"], check=True, stdout=subprocess.DEVNULL,
                    stderr=subprocess.DEVNULL)
     return json.loads((out / "plan.json").read_text())
 
 
 def checks_of(folder):
     """Of the way up and, if there is one, of the way down."""
-    up = check_of(folder, "check")
-    down = [] if not any(folder.glob("checkdown_*.h5")) else [
-        [of[..., ::-1] for of in check_of(folder, "checkdown")]]
-    return [up, *down]
+    return [check_of(folder, run) for run in ("check", "checkdown")
+            if any(folder.glob(f"{run}_*.h5"))]
 
 
 def check_of(folder, run):
-    """Sensor, bias and quadrature at the end of each soak of the check."""
+    """Sensor and bias of each device at the end of each soak of a check."""
     found = []
     for path in sorted(folder.glob(f"{run}_*.h5")):
-        time, columns = signals(path)
+        time, (sensor, bias, _) = signals(path)
         ends = HOLD + np.arange(len(CHAMBER)) * (HOLD + 60 / RAMP)
-        found.append([np.stack([of[:, (time > end - LAST) & (time <= end)]
-                                .mean(1) for end in ends], 1)
-                      for of in columns])
-    sensor, bias, quadrature = (np.concatenate(of) for of in zip(*found))
-    return sensor.mean(0), bias, quadrature
+        parts = [(time > end - LAST) & (time <= end) for end in ends]
+        found.append([np.stack([values[:, part].mean(1) for part in parts], 1)
+                      for values in (sensor, bias)])
+    sensor, bias = (np.concatenate(part) for part in zip(*found))
+    return (sensor, bias) if run == "check" else (sensor[:, ::-1],
+                                                  bias[:, ::-1])
 
 
-def noise_of(soaks, hold, ramp, devices, random):
-    """Of each soak and device: turn-on, walk since power-on, flicker, white."""
-    order = sorted(soaks, reverse=abs(max(soaks) - START) <
-                   abs(min(soaks) - START))
-    now, before = 0.0, START
-    ends = {}
-    for soak in order:
-        now += abs(soak - before) / ramp * 60 + hold
-        ends[soak], before = now, soak
-    steps = np.diff([0.0] + [ends[soak] for soak in order])
-    walk = np.cumsum(random.standard_normal((devices, len(order))) *
-                     np.sqrt(steps), 1)
-    walk = walk[:, [order.index(soak) for soak in soaks]]
-    own = np.hypot(np.sqrt(2 * np.log(2) / np.pi) *
-                   NOISE["bias_instability_deg_per_s"],
-                   NOISE["angle_random_walk_deg_per_sqrt_s"] / np.sqrt(300))
-    return (NOISE["turn_on_deg_per_s"] * random.standard_normal((devices, 1))
-            + NOISE["rate_random_walk_deg_per_s_per_sqrt_s"] * walk
-            + own * random.standard_normal((devices, len(soaks))))
+class Units:
+    """The new units: their checks, and the soaks that they went through."""
+
+    def __init__(self, out, of):
+        self.out, self.of = out, of
+        lowest, highest = map(float, of.range.split(":"))
+        inside = (CHAMBER >= lowest) & (CHAMBER <= highest)
+        self.checks = [(sensor[:, inside], bias[:, inside])
+                       for sensor, bias in checks_of(of.set)]
+        manifest = (of.set / "manifest.jsonl").read_text().split("\n", 1)[0]
+        self.campaign = out / "units.toml"
+        self.campaign.write_text(
+            with_seed(of.campaign, json.loads(manifest)["seed"]))
+        self.known = {}  # the folder of a schedule that is the same for all
+
+    def soaked(self, schedule, limits, again):
+        """The points of each unit after the soaks of a schedule."""
+        key = json.dumps([schedule["temperatures_degC"], schedule["hold_s"]])
+        folder = self.known.get(key)
+        if folder is None:
+            folder = self.out / "units" / (f"{len(self.known)}" if again
+                                           else "planned")
+            shutil.rmtree(folder, ignore_errors=True)
+            folder.mkdir(parents=True)
+            generate(self.of.program, self.campaign, [schedule], folder,
+                     len(self.checks[0][0]), 1, self.of.device.resolve())
+            if again:
+                self.known[key] = folder
+        return list(points(folder / "soaks", "soaks_0", limits))
+
+    def left_of(self, curves):
+        """rms over the checks, of curves at the temperatures of each."""
+        return np.sqrt(np.mean([((bias - curve) ** 2).mean(1) for (_, bias),
+                                curve in zip(self.checks, curves)], 0))
 
 
-def shown_by(soaks, checks):
-    """Bias and quadrature of soaks, of the way on which each is reached."""
-    order = sorted(soaks, reverse=abs(max(soaks) - START) <
-                   abs(min(soaks) - START))
-    before = dict(zip(order, [START, *order]))
-    of = {soak: checks[-1] if before[soak] > soak else checks[0]
-          for soak in soaks}
-    return [np.stack([[np.interp(soak, CHAMBER, one)
-                       for one in of[soak][curve]] for soak in soaks], 1)
-            for curve in (1, 2)]
+def coefficients(population, shown):
+    """Those of each unit, from its points, by the posterior of `adapted`."""
+    found = [None] * len(shown)
+    for size in {len(rows) for rows in shown}:
+        own = [k for k, rows in enumerate(shown) if len(rows) == size]
+        rows = np.array([shown[k] for k in own])
+        at = population.inside(rows[:, :, 0])
+        H, y = [], []
+        for k in range(2):
+            mean, modes = population.curves[2 * k:2 * k + 2]
+            H.append(modes(at) / population.noise[k])
+            y.append((rows[:, :, 1 + k] - mean(at)) / population.noise[k])
+        H, y = np.concatenate(H, 1), np.concatenate(y, 1)
+        S = H @ H.transpose(0, 2, 1) + np.eye(H.shape[1])
+        c = np.einsum("kij,ki->kj", H, np.linalg.solve(S, y[:, :, None])[..., 0])
+        for k, one in zip(own, c):
+            found[k] = one
+    return np.array(found)
 
 
-def realised(file, plan, checks, random):
+def adapted(population, shown, units):
+    """What is left of each unit that is adapted from its points."""
+    low, high = population.grid[[0, -1]]
+    fine = np.arange(low, high + FINE, FINE)
+    mean, modes = (of(population.inside(fine)) for of in population.curves[:2])
+    curves = mean + coefficients(population, shown) @ modes.T
+    return units.left_of([
+        [np.interp(T, fine, curve) for T, curve in zip(sensor, curves)]
+        for sensor, _ in units.checks])
+
+
+def lines(shown, units):
+    """What straight lines leave between the points of each unit."""
+    return units.left_of([
+        [np.interp(T, rows[:, 0], rows[:, 1]) for T, rows in zip(sensor, shown)]
+        for sensor, _ in units.checks])
+
+
+def realised(file, plan, units):
     """What plan, even soaks and straight lines leave of each device."""
-    sensor = checks[0][0]
-    size = len(checks[0][1])
-
-    def left_of(curves):
-        return np.sqrt(np.mean([((bias - curves) ** 2).mean(1)
-                                for _, bias, _ in checks], 0))
-
     population = Population(file)
+    limits = [float(end) for end in population.grid[[0, -1]]]
     found = {}
-    ramp = plan["schedule"]["ramp_K_per_min"]
     for name, of in [("planned", plan["schedule"]), ("even", plan["even"])]:
-        soaks = of["temperatures_degC"]
-        T = np.interp(soaks, CHAMBER, sensor)
-        left, lines = [], []
-        for _ in range(ROUNDS):
-            shown = shown_by(soaks, checks)
-            shown[0] += noise_of(soaks, of["hold_s"], ramp, size, random)
-            left.append(left_of(population.adapted(T, shown, sensor)))
-            lines.append(left_of(np.stack([np.interp(sensor, T, one)
-                                           for one in shown[0]])))
-        found[name] = np.concatenate(left)
+        schedule = {**of, "ramp_K_per_min": plan["schedule"]["ramp_K_per_min"]}
+        shown = units.soaked(schedule, limits, name == "even")
+        found[name] = adapted(population, shown, units)
         if name == "even":
-            found["lines"] = np.concatenate(lines)
+            found["lines"] = lines(shown, units)
     return found
 
 
@@ -159,13 +191,11 @@ def held(interval, value):
     return bool(interval[0] <= value <= interval[1])
 
 
-def draw(arguments, seed, soaks, out, check):
-    kept = arguments.keep and arguments.keep / f"{seed}.json"
-    file = kept if kept and kept.exists() else learned(
-        arguments.program, arguments.campaign, seed, arguments.size, out)
-    plan = planned(arguments.program, file, soaks, arguments.device, out)
-    random = np.random.Generator(np.random.Philox(seed))
-    left = realised(file, plan, check, random)
+def draw(seed, soaks, out, units, of):
+    kept = of.keep and of.keep / f"{seed}.json"
+    file = kept if kept and kept.exists() else learned(seed, out, of)
+    plan = planned(file, soaks, out, of)
+    left = realised(file, plan, units)
     gain = plan["gain_over_straight_lines"]
     ratio = float(np.median(left["planned"]) / np.median(left["lines"]))
     row = {"seed": seed, "soaks": soaks, "devices": plan["devices"],
@@ -176,9 +206,9 @@ def draw(arguments, seed, soaks, out, check):
                            ("lines", plan["straight_lines"])]:
         found = quantiles(left[name])
         row[name] = {"forecast": forecast, "realised": found}
-        for of in ["median", "p95"]:
-            row["holds"][f"{name} {of}"] = held(forecast[f"{of}_interval"],
-                                                found[of])
+        for share in ["median", "p95"]:
+            row["holds"][f"{name} {share}"] = held(
+                forecast[f"{share}_interval"], found[share])
     return row
 
 
@@ -213,14 +243,16 @@ def main():
     parser.add_argument("--first-seed", type=int, default=1001)
     parser.add_argument("--keep", type=pathlib.Path)
     parser.add_argument("--device", type=pathlib.Path, default=NOMINAL)
-    arguments = parser.parse_args()
-    arguments.out = out = arguments.out.resolve()
+    parser.add_argument("--range", default="-40:50")
+    parser.add_argument("--sweep", type=pathlib.Path,
+                        default=SCENARIOS / "soak_sweep_sparse.toml")
+    parser.add_argument("--grid", type=float, default=5)
+    of = parser.parse_args()
+    out = of.out.resolve()
     (out / "sweeps").mkdir(parents=True, exist_ok=True)
-    check = checks_of(arguments.set)
-    rows = [draw(arguments, seed, soaks, out, check)
-            for soaks in arguments.soaks or [3]
-            for seed in range(arguments.first_seed,
-                              arguments.first_seed + arguments.draws)]
+    units = Units(out, of)
+    rows = [draw(seed, soaks, out, units, of) for soaks in of.soaks or [3]
+            for seed in range(of.first_seed, of.first_seed + of.draws)]
     (out / "intervals.json").write_text(json.dumps(rows, indent=1))
     print_table(rows)
 

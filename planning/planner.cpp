@@ -80,10 +80,11 @@ ChamberTime Planner::time_of(const SoakPlan& plan) const {
   return {time_.start, time_.ramp, plan.hold};
 }
 
-// The beam is warmer than the sensor says where the chamber was warmer before.
-// The first soak has the warm-up after power-on beside the ramp.
-std::vector<double> Planner::lags(const std::vector<double>& soaks,
-                                  std::size_t minutes) const {
+// Beam and sensor are still warmer where the chamber was warmer before. The
+// first soak has the warm-up after power-on beside the ramp.
+std::vector<double> Planner::after_ramps(const std::vector<double>& soaks,
+                                         std::size_t minutes,
+                                         double SoakRows::*mean) const {
   std::vector<double> found;
   const std::vector<double> order = in_visiting_order(soaks, time_.start);
   for (const double soak : soaks) {
@@ -91,10 +92,10 @@ std::vector<double> Planner::lags(const std::vector<double>& soaks,
     const bool first = place == order.begin();
     const double before = first ? time_.start : *(place - 1);
     const double ramp = std::ceil(std::abs(before - soak) / time_.ramp);
-    const double lag = mean_lag(
+    const double left = mean_after_ramp(
         behaviour_.rows, minutes,
-        first ? behaviour_.rows.size() : static_cast<std::size_t>(ramp));
-    found.push_back(before > soak ? lag : -lag);
+        first ? behaviour_.rows.size() : static_cast<std::size_t>(ramp), mean);
+    found.push_back(before > soak ? left : -left);
   }
   return found;
 }
@@ -114,7 +115,8 @@ std::vector<double> Planner::ways(const std::vector<double>& soaks) const {
 Planner::Shown Planner::shown(const std::vector<double>& soaks,
                               std::size_t minutes,
                               const std::optional<StartRow>& row) const {
-  SoakErrors errors = {lags(soaks, minutes), {}, ways(soaks)};
+  SoakErrors errors = {
+      after_ramps(soaks, minutes, &SoakRows::mean_lag), {}, ways(soaks)};
   if (row) {
     errors.lag.push_back(row->lag);
     errors.way.push_back(1.0);
@@ -124,7 +126,15 @@ Planner::Shown Planner::shown(const std::vector<double>& soaks,
         *behaviour_.noise, soaks,
         {time_.start, time_.ramp, static_cast<double>(minutes) * 60.0},
         row.has_value());
-  return {with_start_row(soaks, row), std::move(errors)};
+  if (errors.noise.size() > 0)
+    add_noise(behaviour_.temperature_noise * model_.slope(soaks), errors.noise);
+  // Where the sensor is by then.
+  const std::vector<double> rest =
+      after_ramps(soaks, minutes, &SoakRows::mean_rest);
+  std::vector<double> read = soaks;
+  for (std::size_t k = 0; k < read.size(); ++k)
+    if (model_.reaches(read[k] + rest[k])) read[k] += rest[k];
+  return {with_start_row(std::move(read), row), std::move(errors)};
 }
 
 ResidualForecast Planner::forecast(const std::vector<double>& soaks,
@@ -133,19 +143,35 @@ ResidualForecast Planner::forecast(const std::vector<double>& soaks,
   return forecast_residual(model_, all.soaks, all.errors);
 }
 
-ResidualForecast Planner::forecast_with_intervals_of(
-    const SoakModel& model, const std::vector<double>& soaks,
-    std::size_t minutes) const {
-  const Shown all = shown(soaks, minutes, start_row_of(soaks));
-  if (forecast_basis(model.population()) != ForecastBasis::kDevices)
-    return forecast_residual(model, all.soaks, all.errors);
-  return forecast_with_intervals(residual_draws(model, all.soaks, all.errors));
+// Each device with the soaks that were chosen without it.
+ResidualDraws Planner::draws(const SoakModel& model,
+                             const SoakPlan& plan) const {
+  const auto drawn = [&](const std::vector<double>& soaks) {
+    const Shown all = shown(soaks, whole_minutes(plan), start_row_of(soaks));
+    return residual_draws(model, all.soaks, all.errors);
+  };
+  ResidualDraws found = drawn(plan.temperatures);
+  for (std::size_t k = 0; k < plan.of_folds.size(); ++k)
+    if (plan.of_folds[k] != plan.temperatures)
+      take_fold(drawn(plan.of_folds[k]), {k, plan.of_folds.size()}, found);
+  return found;
+}
+
+bool Planner::has_folds() const {
+  const Eigen::Index devices = model_.population().coefficients.rows();
+  return forecast_basis(model_.population()) == ForecastBasis::kDevices &&
+         devices >= static_cast<Eigen::Index>(2 * kFolds) &&
+         devices <= kFewDevices;
 }
 
 ResidualForecast Planner::left_over(const SoakPlan& plan,
                                     const TemperatureRange& range) const {
-  return forecast_with_intervals_of(model_.over(range), plan.temperatures,
-                                    whole_minutes(plan));
+  const SoakModel model = model_.over(range);
+  if (forecast_basis(model.population()) == ForecastBasis::kDevices)
+    return forecast_with_intervals(draws(model, plan));
+  const Shown all = shown(plan.temperatures, whole_minutes(plan),
+                          start_row_of(plan.temperatures));
+  return forecast_residual(model, all.soaks, all.errors);
 }
 
 ResidualDraws Planner::line_draws(const SoakPlan& even) const {
@@ -162,10 +188,7 @@ std::optional<ResidualForecast> Planner::straight_lines(
 std::optional<MedianRatio> Planner::gain(const SoakPlan& plan,
                                          const SoakPlan& even) const {
   if (forecast_basis(model_.population()) != ForecastBasis::kDevices) return {};
-  const Shown all = shown(plan.temperatures, whole_minutes(plan),
-                          start_row_of(plan.temperatures));
-  return ratio_of_medians(residual_draws(model_, all.soaks, all.errors),
-                          line_draws(even));
+  return ratio_of_medians(draws(model_, plan), line_draws(even));
 }
 
 std::size_t Planner::hold_minutes(const std::vector<double>& soaks) const {
@@ -193,18 +216,37 @@ std::size_t Planner::hold_minutes(const std::vector<double>& soaks) const {
   return best;
 }
 
-SoakPlan Planner::judged_with(std::vector<double> soaks, double hold) const {
+double Planner::best_hold(const std::vector<double>& soaks) const {
+  return static_cast<double>(hold_minutes(soaks)) * 60.0;
+}
+
+SoakPlan Planner::judged_with(std::vector<double> soaks, double hold,
+                              std::vector<std::vector<double>> of_folds) const {
   std::ranges::sort(soaks);
-  const auto minutes = static_cast<std::size_t>(std::lround(hold / 60.0));
   const double hours = chamber_hours(soaks, {time_.start, time_.ramp, hold});
-  const ResidualForecast expected =
-      forecast_with_intervals_of(model_, soaks, minutes);
-  return {std::move(soaks), hold, hours, expected};
+  SoakPlan plan = {std::move(soaks), hold, hours, {}, std::move(of_folds)};
+  plan.expected = forecast_basis(model_.population()) == ForecastBasis::kDevices
+                      ? forecast_with_intervals(draws(model_, plan))
+                      : forecast(plan.temperatures, whole_minutes(plan));
+  return plan;
+}
+
+// Of the best soaks over a way.
+SoakPlan Planner::planned_with(std::vector<double> soaks, double hold,
+                               double longest) const {
+  std::vector<std::vector<double>> of_folds;
+  for (std::size_t k = 0; has_folds() && k < kFolds; ++k) {
+    auto chosen =
+        best(soaks.size(), longest, root_without(model_, {k, kFolds}));
+    of_folds.push_back(chosen ? std::move(*chosen) : soaks);
+    std::ranges::sort(of_folds.back());
+  }
+  return judged_with(std::move(soaks), hold, std::move(of_folds));
 }
 
 SoakPlan Planner::judged(std::vector<double> soaks) const {
   std::ranges::sort(soaks);
-  const double hold = static_cast<double>(hold_minutes(soaks)) * 60.0;
+  const double hold = best_hold(soaks);
   return judged_with(std::move(soaks), hold);
 }
 
@@ -229,9 +271,9 @@ std::optional<StartRow> Planner::start_row_of(
 }
 
 // The best end of exchanges from several starts.
-Planner::Ending Planner::best_of(const DesignLimits& limits,
-                                 std::size_t count) const {
-  const SoakDesign design(model_, limits);
+Planner::Ending Planner::best_of(const DesignLimits& limits, std::size_t count,
+                                 const Eigen::MatrixXd& root) const {
+  const SoakDesign design(model_, limits, root);
   Ending best;
   std::vector<std::vector<double>> starts = {design.extended({}, count),
                                              even_spacing(even_range_, count)};
@@ -249,15 +291,15 @@ Planner::Ending Planner::best_of(const DesignLimits& limits,
 }
 
 // The soaks of least mean variance over a way, or none that is so short.
-std::optional<std::vector<double>> Planner::best(std::size_t count,
-                                                 double longest) const {
+std::optional<std::vector<double>> Planner::best(
+    std::size_t count, double longest, const Eigen::MatrixXd& root) const {
   if (longest < 0.0) return {};
   DesignLimits limits = limits_;
   limits.longest_way = longest;
-  Ending found = best_of(limits, count);
+  Ending found = best_of(limits, count, root);
   if (behaviour_.start_row) {
     limits.start_row = behaviour_.start_row;
-    Ending downwards = best_of(limits, count);
+    Ending downwards = best_of(limits, count, root);
     if (downwards.mean_variance < found.mean_variance)
       found = std::move(downwards);
   }
@@ -270,7 +312,11 @@ SoakPlan Planner::with_soaks(std::size_t count) const {
   if (known == planned_.end()) {
     const std::optional<std::vector<double>> soaks = best(count, kUnlimited);
     // Greedy soaks may leave gaps that hold no further one apart.
-    known = planned_.emplace(count, soaks ? judged(*soaks) : even(count)).first;
+    known = planned_
+                .emplace(count, soaks ? planned_with(*soaks, best_hold(*soaks),
+                                                     kUnlimited)
+                                      : even(count))
+                .first;
   }
   return known->second;
 }
@@ -289,7 +335,8 @@ SoakPlan Planner::within_hours(double hours, double rounding) const {
     const double hold = with_soaks(count).hold;
     const auto soaks = best(count, longest_way(count, most, hold));
     if (!soaks) continue;
-    const SoakPlan plan = judged_with(*soaks, hold);
+    const SoakPlan plan =
+        planned_with(*soaks, hold, longest_way(count, most, hold));
     if (!chosen || plan.expected.median < chosen->expected.median)
       chosen = plan;
   }
@@ -308,7 +355,8 @@ SoakPlan Planner::shortened(const SoakPlan& plan, double residual) const {
   for (int k = 0; k < kHalvings; ++k) {
     const double way = (least + most) / 2;
     const auto soaks = best(plan.temperatures.size(), way);
-    const SoakPlan tried = soaks ? judged_with(*soaks, plan.hold) : SoakPlan{};
+    const SoakPlan tried =
+        soaks ? planned_with(*soaks, plan.hold, way) : SoakPlan{};
     if (soaks && tried.expected.median <= residual) {
       shortest = tried;
       most = way;

@@ -22,6 +22,9 @@ struct SoakPlan {
   double hold = 0.0;                 // [s], of each soak
   double hours = 0.0;
   ResidualForecast expected;
+  // Of a plan for few devices: the soaks chosen without the devices of each
+  // fold, in the same way.
+  std::vector<std::vector<double>> of_folds = {};
 };
 
 /// What soaks of a device show beside its curves, and how long they may last.
@@ -31,6 +34,7 @@ struct SoakBehaviour {
   std::optional<SlowNoise> noise = {};      // none: that of SoakModel::noise()
   std::optional<std::size_t> minutes = {};  // of a hold, chosen by the user
   std::optional<StartRow> start_row = {};   // of ways down from the start
+  double temperature_noise = 0.0;           // [K], 1-sigma of that of a soak
 };
 
 /// A number of soaks, planned and evenly spaced; and what straight lines leave
@@ -46,6 +50,12 @@ struct TradeOff {
 std::vector<double> even_spacing(TemperatureRange range, std::size_t count);
 
 /// Plans the soaks of a device of a population.
+///
+/// What a plan leaves of a device is forecast with soaks that were chosen
+/// without it: of up to kFewDevices devices each fifth in turn is left out of
+/// the choice, and tried on the soaks of the others. The choice would have seen
+/// it otherwise, and the forecast be too low. Of more devices a fifth hardly
+/// changes the choice.
 class Planner {
  public:
   /// Soaks may be at whole kelvins from the lower limit of the chamber on, as
@@ -109,8 +119,9 @@ class Planner {
     double mean_variance = std::numeric_limits<double>::infinity();
   };
   double longest_way(std::size_t count, double hours, double hold) const;
-  std::vector<double> lags(const std::vector<double>& soaks,
-                           std::size_t minutes) const;
+  std::vector<double> after_ramps(const std::vector<double>& soaks,
+                                  std::size_t minutes,
+                                  double SoakRows::*mean) const;
   std::vector<double> ways(const std::vector<double>& soaks) const;
   struct Shown {  // by the soaks, with a row of the start if there is one
     std::vector<double> soaks;
@@ -122,14 +133,19 @@ class Planner {
   std::optional<ResidualForecast> straight_lines(const SoakPlan& even) const;
   ResidualForecast forecast(const std::vector<double>& soaks,
                             std::size_t minutes) const;
-  ResidualForecast forecast_with_intervals_of(const SoakModel& model,
-                                              const std::vector<double>& soaks,
-                                              std::size_t minutes) const;
+  ResidualDraws draws(const SoakModel& model, const SoakPlan& plan) const;
+  bool has_folds() const;
   std::size_t hold_minutes(const std::vector<double>& soaks) const;
-  SoakPlan judged_with(std::vector<double> soaks, double hold) const;
-  std::optional<std::vector<double>> best(std::size_t count,
-                                          double longest) const;
-  Ending best_of(const DesignLimits& limits, std::size_t count) const;
+  double best_hold(const std::vector<double>& soaks) const;  // [s]
+  SoakPlan judged_with(std::vector<double> soaks, double hold,
+                       std::vector<std::vector<double>> of_folds = {}) const;
+  SoakPlan planned_with(std::vector<double> soaks, double hold,
+                        double longest) const;
+  std::optional<std::vector<double>> best(
+      std::size_t count, double longest,
+      const Eigen::MatrixXd& root = {}) const;
+  Ending best_of(const DesignLimits& limits, std::size_t count,
+                 const Eigen::MatrixXd& root) const;
   std::optional<StartRow> start_row_of(const std::vector<double>& soaks) const;
   SoakPlan shortened(const SoakPlan& plan, double residual) const;
 
@@ -142,6 +158,9 @@ class Planner {
   // Of each number of soaks, once it was asked for.
   mutable std::map<std::size_t, SoakPlan> planned_, even_;
 };
+
+constexpr std::size_t kFolds = 5;
+constexpr Eigen::Index kFewDevices = 300;
 
 constexpr double kHoldLoss = 0.05;  // [-], of the median
 

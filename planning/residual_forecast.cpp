@@ -11,6 +11,7 @@
 #include "compensation/models/array_view.h"
 #include "compensation/models/lookup_table.h"
 #include "linear_algebra/cholesky.h"
+#include "linear_algebra/eigenvalues.h"
 #include "random/random_stream.h"
 #include "statistics/intervals.h"
 
@@ -194,11 +195,41 @@ Eigen::MatrixXd slow_noise_root(const SlowNoise& noise,
   return root;
 }
 
+void add_noise(const VectorXd& of_soaks, MatrixXd& root) {
+  auto own = root.rightCols(root.rows()).diagonal();
+  for (Index k = 0; k < of_soaks.size(); ++k)
+    own(k) = std::hypot(own(k), of_soaks(k));
+}
+
 ForecastBasis forecast_basis(const Population& population) {
   return population.coefficients.rows() >= kLeastDevices &&
                  population.devices >= population.coefficients.rows()
              ? ForecastBasis::kDevices
              : ForecastBasis::kGaussian;
+}
+
+MatrixXd root_without(const SoakModel& model, const Fold& fold) {
+  const MatrixXd& c = model.population().coefficients;
+  MatrixXd others(c.rows(), c.cols());
+  Index count = 0;
+  for (Index d = 0; d < c.rows(); ++d)
+    if (static_cast<std::size_t>(d) % fold.folds != fold.first)
+      others.row(count++) = c.row(d);
+  others.conservativeResize(count, Eigen::NoChange);
+  others.rowwise() -= others.colwise().mean().eval();
+  MatrixXd covariance =
+      others.transpose() * others / static_cast<double>(count - 1);
+  // Own parts, in which the devices have no coefficients, are independent.
+  for (Index k = 0; k < c.cols(); ++k)
+    if ((c.col(k).array() == 0.0).all()) covariance(k, k) = 1.0;
+  const SymmetricEigen eigen = symmetric_eigen(covariance);
+  return eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
+void take_fold(const ResidualDraws& of_fold, const Fold& fold,
+               ResidualDraws& all) {
+  for (std::size_t k = 0; k < all.rms.size(); ++k)
+    if (k % all.devices % fold.folds == fold.first) all.rms[k] = of_fold.rms[k];
 }
 
 ResidualForecast forecast_of(const ResidualDraws& draws) {

@@ -13,13 +13,6 @@
 
 namespace beamgyro::internal {
 
-/// Slow noise of the bias of a device, 1-sigma, as soaks show it.
-struct SlowNoise {
-  double turn_on = 0.0;  // [deg/s], the same in all soaks
-  double walk = 0.0;     // [deg/s/sqrt(s)], from power-on to the soaks
-  double own = 0.0;      // [deg/s], of each soak alone
-};
-
 /// Returns L, so that L z with normal numbers z are the errors [deg/s] of these
 /// soaks, a row for each in the order given, and with `start_row` of a row
 /// right after power-on behind them.
@@ -27,6 +20,11 @@ Eigen::MatrixXd slow_noise_root(const SlowNoise& noise,
                                 const std::vector<double>& soaks,
                                 const ChamberTime& time,
                                 bool start_row = false);
+
+/// Adds independent errors of the soaks, 1-sigma [deg/s], to a
+/// slow_noise_root(), such as those of a bias that is read at another
+/// temperature.
+void add_noise(const Eigen::VectorXd& of_soaks, Eigen::MatrixXd& root);
 
 /// The 95 % intervals of the quantiles of a forecast.
 struct ForecastIntervals {
@@ -102,6 +100,20 @@ struct ResidualDraws {
 };
 
 ResidualForecast forecast_of(const ResidualDraws& draws);
+
+/// Devices of a population, given as its draws are: every `folds`-th from
+/// `first` on.
+struct Fold {
+  std::size_t first = 0, folds = 1;
+};
+
+/// Returns a root of the covariance of the coefficients of all devices but
+/// those of a fold, with that of own parts.
+Eigen::MatrixXd root_without(const SoakModel& model, const Fold& fold);
+
+/// Puts the draws of the devices of a fold in place of those in `all`.
+void take_fold(const ResidualDraws& of_fold, const Fold& fold,
+               ResidualDraws& all);
 
 /// Returns the draws behind forecast_residual(). The population must allow
 /// ForecastBasis::kDevices.

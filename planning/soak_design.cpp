@@ -20,20 +20,31 @@ constexpr double kWaySlack = 1e-9;  // [K], rounding of a way
 
 }  // namespace
 
-SoakDesign::SoakDesign(const SoakModel& model, DesignLimits limits)
+// With c = L z and z ~ N(0, I) everything is as of z, with H L and L^T W L.
+SoakDesign::SoakDesign(const SoakModel& model, DesignLimits limits,
+                       const MatrixXd& root)
     : model_(model),
       limits_(std::move(limits)),
-      equations_(model.equations(limits_.candidates)) {}
+      root_(root),
+      weight_(root.size() > 0
+                  ? MatrixXd(root.transpose() * model.weight() * root)
+                  : model.weight()),
+      equations_(equations(limits_.candidates)) {}
+
+MatrixXd SoakDesign::equations(const std::vector<double>& soaks) const {
+  const MatrixXd H = model_.equations(soaks);
+  return root_.size() > 0 ? MatrixXd(H * root_) : H;
+}
 
 MatrixXd SoakDesign::covariance(const std::vector<double>& soaks) const {
-  const MatrixXd H = model_.equations(with_start_row(soaks, limits_.start_row));
+  const MatrixXd H = equations(with_start_row(soaks, limits_.start_row));
   MatrixXd A = H.transpose() * H;
   A.diagonal().array() += 1.0;
   return Cholesky(A).inverse();
 }
 
 double SoakDesign::mean_variance(const std::vector<double>& soaks) const {
-  return model_.weight().cwiseProduct(covariance(soaks)).sum();
+  return weight_.cwiseProduct(covariance(soaks)).sum();
 }
 
 bool SoakDesign::is_allowed(const std::vector<double>& soaks) const {
@@ -50,7 +61,7 @@ bool SoakDesign::is_allowed(const std::vector<double>& soaks) const {
 std::vector<double> SoakDesign::reductions(const MatrixXd& P) const {
   const Index rows = model_.rows_per_soak();
   const MatrixXd U = P * equations_.transpose();  // a column per row of H
-  const MatrixXd WU = model_.weight() * U;
+  const MatrixXd WU = weight_ * U;
   std::vector<double> found;
   for (Index k = 0; k < U.cols(); k += rows) {
     MatrixXd S = equations_.middleRows(k, rows) * U.middleCols(k, rows);
@@ -78,7 +89,7 @@ SoakDesign::Choice SoakDesign::best_addition(
     }
   }
   if (best.candidate < gains.size())
-    best.mean_variance = model_.weight().cwiseProduct(P).sum() - gain;
+    best.mean_variance = weight_.cwiseProduct(P).sum() - gain;
   return best;
 }
 

@@ -34,8 +34,10 @@ constexpr double kLeastDistance = 1.5 * kPointWidth;
 /// V = h A^-1 W A^-1 h^T.
 class SoakDesign {
  public:
-  /// The model must outlive the design.
-  SoakDesign(const SoakModel& model, DesignLimits limits);
+  /// The model must outlive the design. `root` is a root of the covariance of c
+  /// over devices, where that is not I.
+  SoakDesign(const SoakModel& model, DesignLimits limits,
+             const Eigen::MatrixXd& root = {});
 
   /// The mean variance that soaks leave [(deg/s)^2].
   double mean_variance(const std::vector<double>& soaks) const;
@@ -59,9 +61,12 @@ class SoakDesign {
   std::vector<double> reductions(const Eigen::MatrixXd& covariance) const;
   Choice best_addition(const std::vector<double>& soaks) const;
   Eigen::MatrixXd covariance(const std::vector<double>& soaks) const;
+  Eigen::MatrixXd equations(const std::vector<double>& soaks) const;
 
   const SoakModel& model_;
   DesignLimits limits_;
+  Eigen::MatrixXd root_;       // or nothing, for I
+  Eigen::MatrixXd weight_;     // W
   Eigen::MatrixXd equations_;  // H of all candidates
 };
 

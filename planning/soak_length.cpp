@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "config/units.h"
 #include "sim/numerics/piecewise_linear.h"
@@ -75,6 +76,12 @@ Minutes minutes_of_hold(const ThermalParameters& parameters, const Ramp& ramp) {
 
 }  // namespace
 
+double temperature_noise(double resolution, const RowRule& rule) {
+  constexpr double kSpan = 2.0;  // [min]
+  return resolution / std::sqrt(12.0) *
+         std::hypot(1.0, std::numbers::sqrt2 * rule.lag / kSpan);
+}
+
 double lag_minutes(const ThermalParameters& parameters, double from,
                    double ramp, double steady) {
   const Minutes hold = minutes_of_hold(
@@ -95,12 +102,15 @@ std::vector<SoakRows> rows_over_time(const ThermalParameters& parameters,
   const Minutes hold = minutes_of_hold(parameters, {from, to, ramp});
   std::vector<SoakRows> found;
   SoakRows rows;
-  double lags = 0.0;
+  double lags = 0.0, rests = 0.0;
+  const double settled = hold.sensor.back();
   for (std::size_t k = 0; k < hold.rate.size(); ++k) {
     if (std::abs(hold.rate[k]) <= rule.steady) {
       ++rows.rows;
       lags += hold.lag[k] + rule.lag * hold.rate[k];
+      rests += hold.sensor[k] - rule.lag * hold.rate[k] - settled;
       rows.mean_lag = lags / rows.rows;
+      rows.mean_rest = rests / rows.rows;
     }
     found.push_back(rows);
   }
@@ -150,15 +160,15 @@ std::vector<double> with_start_row(std::vector<double> soaks,
   return soaks;
 }
 
-double mean_lag(const std::vector<SoakRows>& rows, std::size_t minutes,
-                std::size_t ramp) {
+double mean_after_ramp(const std::vector<SoakRows>& rows, std::size_t minutes,
+                       std::size_t ramp, double SoakRows::*mean) {
   const SoakRows& hold = rows.at(minutes - 1);
   if (hold.rows == 0) return 0.0;
-  // Sum of the lags of the rows from the start of the hold to a minute of it.
+  // Sum over the rows from the start of the hold to a minute of it.
   const auto sum = [&](std::size_t minute) {
     if (minute == 0) return 0.0;
     const SoakRows& now = rows[std::min(minute, rows.size()) - 1];
-    return now.rows * now.mean_lag;
+    return now.rows * (now.*mean);
   };
   const std::size_t first = minutes - static_cast<std::size_t>(hold.rows);
   return std::abs(sum(minutes) - (sum(minutes + ramp) - sum(first + ramp))) /

@@ -19,6 +19,8 @@ constexpr int kLeastSteadyRows = 5;    // of a minute, that a soak should have
 struct SoakRows {
   int rows = 0;           // steady minutes
   double mean_lag = 0.0;  // [K], of the beam behind their temperature
+  // [K], of their temperature from that to which the sensor settles
+  double mean_rest = 0.0;
 };
 
 /// A row that stands for the temperature of the device at power-on.
@@ -34,6 +36,12 @@ struct RowRule {
   double lag = 0.0;  // [min]: a row is at T - lag dT/dt of the sensor's T
   double after_power_on = 0.0;  // [min], of the first row
 };
+
+/// Returns the 1-sigma [K] of the temperature that the rows of a soak are read
+/// at, of a sensor that rounds to `resolution` [K]. Most rows of a short hold
+/// have no more than two steady neighbours on one side, and a rate over two
+/// minutes, both ends of which are rounded.
+double temperature_noise(double resolution, const RowRule& rule);
 
 /// Returns the lag [min] that rows should be read with, to a tenth: after a
 /// ramp of kUsualStep from `from` [degC], settled, the beam lags behind the
@@ -75,14 +83,14 @@ bool has_start_row(const std::vector<double>& soaks, double start,
 std::vector<double> with_start_row(std::vector<double> soaks,
                                    const std::optional<StartRow>& row);
 
-/// Returns the size of the mean lag [K] in the rows of a hold of so many
-/// minutes after a ramp of `ramp` whole minutes, given `rows` of a soak whose
-/// ramp was so long that the lag no longer grew. A shorter ramp is that one
-/// less one that ended `ramp` earlier, because the heat flow is linear. Rows
-/// are the last minutes of the hold. Throws std::out_of_range for holds that
-/// `rows` has not.
-double mean_lag(const std::vector<SoakRows>& rows, std::size_t minutes,
-                std::size_t ramp);
+/// Returns the size of a mean of SoakRows [K], its lag or its rest, in the rows
+/// of a hold of so many minutes after a ramp of `ramp` whole minutes, given
+/// `rows` of a soak whose ramp was so long that the lag no longer grew. A
+/// shorter ramp is that one less one that ended `ramp` earlier, because the
+/// heat flow is linear. Rows are the last minutes of the hold. Throws
+/// std::out_of_range for holds that `rows` has not.
+double mean_after_ramp(const std::vector<SoakRows>& rows, std::size_t minutes,
+                       std::size_t ramp, double SoakRows::*mean);
 
 constexpr double kCapacityMargin = 0.1;  // [-]
 

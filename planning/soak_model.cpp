@@ -20,25 +20,77 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 constexpr double kRangeStep = 1.0;  // [K], over which the residual is averaged
+// [-], of the variance of noise in a direction: curves that differ by less
+// there are its rounding.
+constexpr double kLeastTruth = 1e-3;
+
+// A column for each step of a walk: it moves all values of the bias beyond it.
+MatrixXd steps_of_walk(const Population& population) {
+  const Index steps = population.grid() - 1;
+  MatrixXd walk = MatrixXd::Zero(population.modes.rows(), steps);
+  for (Index step = 0; step < steps; ++step)
+    walk.col(step).segment(step + 1, steps - step).setOnes();
+  return walk;
+}
+
+MatrixXd variance_of_largest_walk(const Population& population) {
+  const MatrixXd shown =
+      solve_system(population.modes, steps_of_walk(population));
+  const MatrixXd V = shown * shown.transpose();
+  return V / symmetric_eigen(V).values.maxCoeff();
+}
+
+// A root of the covariance of noise on the grid, of the mean of the sweeps.
+MatrixXd noise_of_sweeps(const Population& population, const SlowNoise& noise) {
+  const Index grid = population.grid(), steps = grid - 1;
+  const auto& [count, seconds_per_K] = *population.sweeps;
+  const TemperatureRange range = population.range();
+  const double step = seconds_per_K * (range.highest - range.lowest) /
+                      static_cast<double>(steps);
+  MatrixXd root = MatrixXd::Zero(population.modes.rows(), 1 + steps + grid);
+  root.col(0).head(grid).setConstant(noise.turn_on);
+  root.middleCols(1, steps) =
+      noise.walk * std::sqrt(step) * steps_of_walk(population);
+  root.topRightCorner(grid, grid).diagonal().setConstant(noise.own);
+  return root / std::sqrt(count);
+}
+
+// In the coordinates of c, of the directions in which the curves differ.
+// Channels count by their spread, because their units differ.
+MatrixXd variance_of_sweeps(const Population& population,
+                            const SlowNoise& noise) {
+  const Index grid = population.grid();
+  MatrixXd modes = population.modes;
+  MatrixXd root = noise_of_sweeps(population, noise);
+  for (Index first = 0; first < modes.rows(); first += grid) {
+    const double unit = curve_spread(population, first / grid);
+    modes.middleRows(first, grid) /= unit;
+    root.middleRows(first, grid) /= unit;
+  }
+  const SymmetricEigen curves = symmetric_eigen(modes.transpose() * modes);
+  MatrixXd shown = curves.vectors.transpose() * modes.transpose() * root;
+  for (Index k = 0; k < shown.rows(); ++k) {
+    const double variance = curves.values(k);
+    const double noise_square = shown.row(k).squaredNorm();
+    // Over the variance; the variance of the noise is noise_square / variance.
+    if (variance * variance > kLeastTruth * noise_square)
+      shown.row(k) /= variance;
+    else
+      shown.row(k).setZero();
+  }
+  const MatrixXd of_c = curves.vectors * shown;
+  return of_c * of_c.transpose();
+}
 
 }  // namespace
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-
-MatrixXd truth_root(const Population& population) {
-  const MatrixXd& modes = population.modes;
-  const Index size = modes.rows(), steps = population.grid() - 1;
-  MatrixXd V = MatrixXd::Zero(modes.cols(), modes.cols());
-  if (modes.cols() == size) {
-    // Each step of the walk moves all values of the bias beyond it.
-    MatrixXd walk = MatrixXd::Zero(size, steps);
-    for (Index step = 0; step < steps; ++step)
-      walk.col(step).segment(step + 1, steps - step).setOnes();
-    const MatrixXd shown = solve_system(modes, walk);
-    V = shown * shown.transpose();
-    V /= symmetric_eigen(V).values.maxCoeff();
-  }
+MatrixXd truth_root(const Population& population,
+                    const std::optional<SlowNoise>& of_sweep) {
+  const Index modes = population.modes.cols();
+  const MatrixXd V =
+      of_sweep && population.sweeps ? variance_of_sweeps(population, *of_sweep)
+      : modes == population.modes.rows() ? variance_of_largest_walk(population)
+                                         : MatrixXd::Zero(modes, modes);
   const SymmetricEigen left =
       symmetric_eigen(MatrixXd::Identity(V.rows(), V.cols()) - V);
   return left.vectors * left.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() *
@@ -56,7 +108,7 @@ SoakModel::SoakModel(Population population, SensorOfChamber sensor,
         "soak could tell; expected a population whose devices differ");
   for (Index curve = 0; curve < rows_per_soak(); ++curve)
     noise_.push_back(point_noise_of(population_, curve, noise()));
-  truth_ = truth_root(population_);
+  truth_ = truth_root(population_, options_.of_sweep);
   add_own_modes();
   const Index grid = population_.grid();
   for (Index curve = 0; curve < rows_per_soak(); ++curve) {
@@ -80,7 +132,7 @@ void SoakModel::weigh_range() {
 }
 
 MatrixXd SoakModel::hysteresis(const std::vector<double>& chamber) const {
-  const MatrixXd& half = population_.hysteresis;
+  const MatrixXd half = true_hysteresis(population_);
   if (half.size() == 0) return {};
   const ArrayXd sensor = known_sensor(array_view(chamber));
   MatrixXd weights(sensor.size(), half.cols());
@@ -185,6 +237,16 @@ SoakModel::Bias SoakModel::bias(const std::vector<double>& chamber,
                                 const std::vector<double>& lag) const {
   const ArrayXd beam = known_beam(known_sensor(array_view(chamber)), lag);
   return {means_.front().predict(beam).matrix(), values(0, beam)};
+}
+
+Eigen::VectorXd SoakModel::slope(const std::vector<double>& chamber) const {
+  constexpr double kStep = 0.5;  // [K]
+  const Bias above = bias(chamber, std::vector(chamber.size(), kStep));
+  const Bias below = bias(chamber, std::vector(chamber.size(), -kStep));
+  const Eigen::ArrayXd square =
+      (above.mean - below.mean).array().square() +
+      (above.modes - below.modes).rowwise().squaredNorm().array();
+  return square.sqrt() / (2.0 * kStep);
 }
 
 SoakModel::Lagging SoakModel::lagging(const std::vector<double>& chamber,

@@ -12,16 +12,30 @@
 
 namespace beamgyro::internal {
 
+/// Slow noise of the bias of a device, 1-sigma, as soaks show it.
+struct SlowNoise {
+  double turn_on = 0.0;  // [deg/s], the same in all soaks
+  double walk = 0.0;     // [deg/s/sqrt(s)], from power-on to the soaks
+  double own = 0.0;      // [deg/s], of each soak alone
+};
+
 /// Returns the symmetric root R of the covariance I - V of what devices of a
 /// population really are: c shows them with the slow noise of the sweeps that
 /// the population was learned from, and c R has the covariance without it.
 ///
-/// V is that of a walk of the bias along the grid, with the largest variance of
-/// a step that leaves I - V no negative eigenvalue. The curves of devices are
-/// smooth: what is left of their covariance in the directions in which they
-/// differ least is noise. Without such directions, or with fewer modes than
-/// values on the grid, nothing is taken off: R = I.
-Eigen::MatrixXd truth_root(const Population& population);
+/// Where the population says how long its sweeps took, V is that of the slow
+/// noise `of_sweep` of each: a turn-on offset, a walk along the grid, and noise
+/// of each temperature. Negative eigenvalues of I - V, in directions in which
+/// the devices differ by less than their noise, count as 0.
+///
+/// Otherwise V is that of a walk of the bias along the grid, with the largest
+/// variance of a step that leaves I - V no negative eigenvalue. The curves of
+/// devices are smooth: what is left of their covariance in the directions in
+/// which they differ least is noise. Of few devices hardly anything is found in
+/// that way. Without such directions, or with fewer modes than values on the
+/// grid, nothing is taken off: R = I.
+Eigen::MatrixXd truth_root(const Population& population,
+                           const std::optional<SlowNoise>& of_sweep = {});
 
 /// Maps temperatures of the chamber [degC] to those that the sensor settles to.
 using SensorOfChamber = std::function<Eigen::ArrayXd(const Eigen::ArrayXd&)>;
@@ -31,6 +45,8 @@ struct SoakModelOptions {
   // Of a soak; without one what the population has learned.
   std::optional<PointNoise> noise = {};
   bool bias_only = false;  // soaks observe no channel of the population
+  // Of the devices while the population was learned.
+  std::optional<SlowNoise> of_sweep = {};
 };
 
 /// Largest distance [K] by which a temperature of the sensor may lie outside
@@ -85,9 +101,13 @@ class SoakModel {
   Bias bias(const std::vector<double>& chamber,
             const std::vector<double>& lag) const;
 
-  /// Returns half of what the bias of each device of the population is more
-  /// while the temperature falls [deg/s]: a row for each device, a column for
-  /// each temperature of the chamber. No columns where it is not known.
+  /// Returns the rms over devices of the slope of the bias at temperatures of
+  /// the chamber [deg/s/K].
+  Eigen::VectorXd slope(const std::vector<double>& chamber) const;
+
+  /// Returns true_hysteresis() of the population [deg/s]: a row for each
+  /// device, a column for each temperature of the chamber. No columns where it
+  /// is not known.
   Eigen::MatrixXd hysteresis(const std::vector<double>& chamber) const;
 
   /// Returns the mean square of the same over the range, of each device

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <stdexcept>
 
@@ -177,6 +178,45 @@ void set_hysteresis(Population& p, const TrainingRows& rows,
   p.hysteresis = (half.array() * kCoefficientSteps).round() / kCoefficientSteps;
 }
 
+// Time between the rows nearest to neighbouring temperatures of the grid, over
+// the grid [s]; nothing of rows that leave out an end of it.
+std::optional<double> sweep_time(const TrainingRows& rows,
+                                 const std::vector<Index>& own,
+                                 const ArrayXd& grid) {
+  const Index last = grid.size() - 1;
+  const double reach = (grid(last) - grid(0)) / static_cast<double>(last);
+  const ArrayXd T = rows.temperature(own);
+  double sum = 0.0, before = 0.0;
+  for (Index g = 0; g <= last; ++g) {
+    Index nearest = 0;
+    const double distance = (T - grid(g)).abs().minCoeff(&nearest);
+    const double now = rows.time(own[static_cast<std::size_t>(nearest)]);
+    if ((g == 0 || g == last) && distance > reach) return {};
+    if (g > 0) sum += std::abs(now - before);
+    before = now;
+  }
+  return sum;
+}
+
+void set_sweeps(Population& p, const TrainingRows& rows,
+                const RowsOfDevices& devices) {
+  if (rows.run.size() < rows.size() || rows.time.size() < rows.size()) return;
+  double count = 0.0, time = 0.0;
+  for (const std::vector<Index>& own : devices) {
+    std::map<int, std::vector<Index>> runs;
+    for (const Index row : own) runs[rows.run(row)].push_back(row);
+    for (const auto& [run, of_run] : runs)
+      if (const auto found = sweep_time(rows, of_run, p.temperatures)) {
+        count += 1.0;
+        time += *found;
+      }
+  }
+  const TemperatureRange range = p.range();
+  if (time > 0.0)
+    p.sweeps = {count / static_cast<double>(devices.size()),
+                time / count / (range.highest - range.lowest)};
+}
+
 // The prior c ~ N(0, I) above what the points show.
 PointEquations with_prior(const PointEquations& points) {
   const Index modes = points.H.cols();
@@ -212,6 +252,7 @@ Population fit_population(const std::vector<Input>& inputs,
                               std::sqrt(static_cast<double>(count - 1));
   set_modes(population, deviations);
   set_hysteresis(population, rows, devices, grid_K);
+  set_sweeps(population, rows, devices);
   return population;
 }
 
@@ -221,6 +262,13 @@ double hysteresis_rms(const Population& population) {
   return std::sqrt(std::max(
       4.0 * population.hysteresis.array().square().mean() - 2.0 * noise * noise,
       0.0));
+}
+
+MatrixXd true_hysteresis(const Population& population) {
+  const MatrixXd& shown = population.hysteresis;
+  const double square = shown.size() > 0 ? shown.array().square().mean() : 0.0;
+  if (square == 0.0) return shown;
+  return shown * (0.5 * hysteresis_rms(population) / std::sqrt(square));
 }
 
 LeftOutDevice left_out_device(const Population& population) {

@@ -47,6 +47,12 @@ struct PointNoise {
   double channel_share = 0.01;
 };
 
+/// The sweeps that a population was learned from.
+struct Sweeps {
+  double of_each_device = 0.0;  // how many cover the grid, mean over devices
+  double seconds_per_K = 0.0;   // of a sweep, from one temperature to the next
+};
+
 /// The distribution of the gyros of a population. Over devices, the bias b and
 /// further channels q_1, q_2, ... (quadrature, ...) as functions of the
 /// temperature T are one Gaussian process,
@@ -74,6 +80,8 @@ struct Population {
   // more while the temperature falls than while it rises [deg/s]. None unless
   // all devices were swept both ways; the curves are the means of both then.
   Eigen::MatrixXd hysteresis = {};
+  // Files of older programs do not say it, nor rows that are of no recordings.
+  std::optional<Sweeps> sweeps = {};
 
   Eigen::Index grid() const { return temperatures.size(); }
   TemperatureRange range() const;
@@ -85,6 +93,12 @@ constexpr Eigen::Index kMostCoefficients = 1000;
 /// and of rising temperatures differ [deg/s]. The variance of a point's noise
 /// in both is taken off. 0 where the devices were not swept both ways.
 double hysteresis_rms(const Population& population);
+
+/// Returns Population::hysteresis without that noise: each value is less by the
+/// same factor, and the rms is half of hysteresis_rms(). The factor is 1 where
+/// the variance of the noise is 0. No values where the devices were not swept
+/// both ways.
+Eigen::MatrixXd true_hysteresis(const Population& population);
 
 /// How a device of a population, with the coefficients c among n, lies to the
 /// n - 1 others: they have the mean -c / (n - 1) and the covariance alpha I -

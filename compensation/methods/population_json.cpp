@@ -103,6 +103,12 @@ Eigen::MatrixXd read_hysteresis(const JsonNode& node, Index devices,
   return half;
 }
 
+Sweeps read_sweeps(const JsonNode& node) {
+  node.require_only({"of_each_device", "s_per_K"});
+  return {read_positive(node.at("of_each_device")),
+          read_positive(node.at("s_per_K"))};
+}
+
 }  // namespace
 
 Json population_json(const Population& population) {
@@ -116,6 +122,10 @@ Json population_json(const Population& population) {
                {"coefficients", rows_json(population.coefficients)}};
   if (population.hysteresis.size() > 0)
     json["hysteresis"] = rows_json(population.hysteresis);
+  if (population.sweeps)
+    json["sweeps"] = {
+        {"of_each_device", finite_json(population.sweeps->of_each_device)},
+        {"s_per_K", finite_json(population.sweeps->seconds_per_K)}};
   if (population.sigma) json["sigma"] = adaptation_json(*population.sigma);
   return json;
 }
@@ -145,6 +155,7 @@ Population read_population(const JsonNode& node) {
     population.own = read_own(node.at("own"), 1 + population.channels.size());
   if (node.has("point_noise_deg_per_s"))
     population.point_noise = read_positive(node.at("point_noise_deg_per_s"));
+  if (node.has("sweeps")) population.sweeps = read_sweeps(node.at("sweeps"));
   if (node.has("sigma")) population.sigma = read_adaptation(node.at("sigma"));
   return population;
 }

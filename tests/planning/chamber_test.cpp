@@ -81,10 +81,31 @@ TEST(SoakLength, LagOfAShortRampIsThatOfALongOneLessAnEarlierOne) {
     rows.push_back({count, count > 0 ? sum / count : 0.0});
   }
   // Of a ramp of 5 min: 1 - exp(-5 / 10) of a long one.
-  EXPECT_NEAR(mean_lag(rows, 30, 5) / rows[29].mean_lag, 1 - std::exp(-0.5),
-              1e-9);
-  EXPECT_NEAR(mean_lag(rows, 30, 1000), rows[29].mean_lag, 1e-6);
-  EXPECT_EQ(mean_lag(rows, 30, 0), 0.0);
+  const auto lag = [&](std::size_t ramp) {
+    return mean_after_ramp(rows, 30, ramp, &SoakRows::mean_lag);
+  };
+  EXPECT_NEAR(lag(5) / rows[29].mean_lag, 1 - std::exp(-0.5), 1e-9);
+  EXPECT_NEAR(lag(1000), rows[29].mean_lag, 1e-6);
+  EXPECT_EQ(lag(0), 0.0);
+}
+
+TEST(SoakLength, RowsRestWhereTheBeamIsAndNotYetWhereItSettles) {
+  // After a ramp down the rows without the lag are warmer than they will be.
+  const double lag = lag_minutes({}, 25, 2, kSteady);
+  const auto rows = rows_over_time({}, 25, -40, 2, {kSteady, lag});
+  ASSERT_GE(rows[19].rows, kLeastSteadyRows);
+  EXPECT_GT(rows[19].mean_rest, 0.3);
+  EXPECT_LT(rows[119].mean_rest, 0.5 * rows[19].mean_rest);
+  // After a ramp up they are colder.
+  EXPECT_LT(rows_over_time({}, 25, 50, 2, {kSteady, lag})[19].mean_rest, -0.3);
+}
+
+TEST(SoakLength, ARoundedTemperatureIsWorseReadWithALag) {
+  EXPECT_NEAR(temperature_noise(0.12, {kSteady, 0.0}), 0.12 / std::sqrt(12.0),
+              1e-12);
+  // 8 min times a rate over 2 min, of two rounded temperatures.
+  EXPECT_NEAR(temperature_noise(0.12, {kSteady, 8.0}),
+              0.12 / std::sqrt(12.0) * std::sqrt(1.0 + 2.0 * 16.0), 1e-12);
 }
 
 TEST(SoakLength, RowsReadWithTheLagOfTheDeviceNeedNotBeSettled) {

@@ -112,7 +112,9 @@ TEST(ResidualForecast, HysteresisIsCountedBothWays) {
   };
   const double without = median();
   few.hysteresis = Eigen::MatrixXd::Constant(3, few.grid(), 0.5);
-  EXPECT_NEAR(median(), std::hypot(without, 0.5), 1e-3);
+  // Less the noise of a point of each of the two sweeps, half of it.
+  const double half = 0.5 * std::sqrt(1.0 - 2.0 * 0.03 * 0.03);
+  EXPECT_NEAR(median(), std::hypot(without, half), 1e-3);
   // A constant through one soak is moved by it: up after a way down. Over both
   // directions of the check the squares of the two differ by the cross term
   // only, which changes its sign with the way.
@@ -125,7 +127,7 @@ TEST(ResidualForecast, HysteresisIsCountedBothWays) {
   };
   const double down = square(1.0), up = square(-1.0);
   few.hysteresis.setZero();
-  EXPECT_NEAR(0.5 * (down + up), square(1.0) + 2 * 0.25, 1e-9);
+  EXPECT_NEAR(0.5 * (down + up), square(1.0) + 2 * half * half, 1e-9);
 }
 
 TEST(ResidualForecast, TurnOnStaysWhereIndependentNoiseAveragesOut) {
@@ -220,6 +222,45 @@ TEST(TruthRoot, KeepsCurvesWithoutDirectionsOfNoise) {
   const Population smooth = small_population(60);
   const Eigen::MatrixXd R = truth_root(smooth);
   EXPECT_LT((R - Eigen::MatrixXd::Identity(R.rows(), R.cols())).norm(), 1e-12);
+}
+
+// Curves of `clean` covariance, and sweeps of an hour from end to end.
+Population swept_population(const Eigen::MatrixXd& shown, double sweeps) {
+  Population p = small_population(40);
+  p.modes = reference::cholesky_root(shown);
+  p.sweeps = {sweeps, 3600.0 / 40.0};
+  return p;
+}
+
+TEST(TruthRoot, TakesOffTheNoiseOfTheSweepsWhateverTheDevicesShow) {
+  // Steps of 0.05 deg/s, by sqrt(90 s), and two sweeps of each device, which
+  // are averaged. In the direction in which these devices differ least it is
+  // by 1e-4 of a step only, as of few devices it may be.
+  const double step = 0.05;
+  const Eigen::Index grid = small_population(40).grid();
+  const Eigen::MatrixXd clean = smooth_covariance(grid, 0.0);
+  const Population p =
+      swept_population(smooth_covariance(grid, step / std::sqrt(2.0)), 2.0);
+  const Eigen::MatrixXd R =
+      truth_root(p, SlowNoise{.walk = step / std::sqrt(90.0)});
+  const Eigen::MatrixXd found = p.modes * R * R * p.modes.transpose();
+  EXPECT_LT((found - clean).cwiseAbs().maxCoeff(), 1e-4);
+}
+
+TEST(TruthRoot, TakesOffTheNoiseOfFewerModesThanValues) {
+  // Two modes: a constant, of which 0.3 of 0.5 deg/s are the turn-on offset,
+  // and a slope that no noise has.
+  Population p = small_population(40);
+  p.modes.setZero(p.modes.rows(), 2);
+  p.modes.col(0).head(p.grid()).setConstant(0.5);
+  p.modes.col(1).head(p.grid()).setLinSpaced(-1.0, 1.0);
+  p.sweeps = {1.0, 90.0};
+  const Eigen::MatrixXd R = truth_root(p, SlowNoise{.turn_on = 0.3});
+  EXPECT_NEAR(R(0, 0) * 0.5, 0.4, 1e-9);
+  EXPECT_NEAR(R(1, 1), 1.0, 1e-9);
+  EXPECT_NEAR(R(0, 1), 0.0, 1e-9);
+  // More noise than the devices differ by leaves nothing true of it.
+  EXPECT_NEAR(truth_root(p, SlowNoise{.turn_on = 0.8})(0, 0), 0.0, 1e-9);
 }
 
 TEST(ResidualForecast, IsTheSameEveryTime) {

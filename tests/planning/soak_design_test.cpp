@@ -135,10 +135,13 @@ TEST(Planner, HoldsAreAsShortAsTheLagAllows) {
   const auto at = [&](std::size_t hold) {
     return forecast_residual(
                model, plan.temperatures,
-               {{mean_lag(rows, hold, ramp), rows[hold - 1].mean_lag}, {}})
+               {{mean_after_ramp(rows, hold, ramp, &SoakRows::mean_lag),
+                 rows[hold - 1].mean_lag},
+                {}})
         .median;
   };
-  EXPECT_NEAR(at(minutes), plan.expected.median, 1e-9);
+  EXPECT_NEAR(at(minutes), planner.judged(plan.temperatures).expected.median,
+              1e-9);
   EXPECT_LE(at(minutes), settled * 1.1);
   EXPECT_GT(minutes, 7U);  // five rows
   EXPECT_GT(at(minutes - 1), at(minutes));
@@ -169,6 +172,71 @@ TEST(Planner, CountsTheRowAfterPowerOnOfWaysThatGoDown) {
   EXPECT_LT(shown.mean_variance({low, high}),
             SoakDesign(model, {every_kelvin()}).mean_variance(without));
   EXPECT_FALSE(shown.is_allowed({38.0, 10.0}));
+}
+
+TEST(SoakDesign, ARootIsAsOfAPopulationOfThatCovariance) {
+  // Modes twice as large, or a root that doubles them.
+  const Population small = small_population(40);
+  Population large = small;
+  large.modes *= 2.0;
+  const Eigen::Index modes = small.modes.cols();
+  const SoakModelOptions options = {.range = small.range(),
+                                    .noise = PointNoise{.channel_share = 1e9},
+                                    .bias_only = true};
+  const SoakModel model(small, same_temperature, options);
+  const SoakModel doubled(large, same_temperature, options);
+  const std::vector<double> soaks = {5.0, 33.0};
+  EXPECT_NEAR(
+      SoakDesign(model, {soaks}, 2.0 * Eigen::MatrixXd::Identity(modes, modes))
+          .mean_variance(soaks),
+      SoakDesign(doubled, {soaks}).mean_variance(soaks), 1e-9);
+}
+
+TEST(Planner, ForecastsFewDevicesBySoaksThatWereChosenWithoutThem) {
+  const Population few = small_population(20);
+  const SoakModel model = model_of(few, true);
+  const Planner planner(model, few.range(), {}, {.rows = {SoakRows{5, 0.0}}});
+  const SoakPlan plan = planner.with_soaks(2);
+  ASSERT_EQ(plan.of_folds.size(), kFolds);
+  // A device of each fold, among the four others of which nobody knows it.
+  const ResidualDraws same = residual_draws(model, plan.temperatures);
+  ResidualDraws nested = same;
+  for (std::size_t k = 0; k < kFolds; ++k)
+    take_fold(residual_draws(model, plan.of_folds[k]), {k, kFolds}, nested);
+  EXPECT_NEAR(plan.expected.median, forecast_of(nested).median, 1e-9);
+  EXPECT_NE(plan.expected.median, forecast_of(same).median);
+  for (std::size_t k = 0; k < nested.rms.size(); ++k)
+    if (plan.of_folds[k % 20 % kFolds] == plan.temperatures) {
+      EXPECT_EQ(nested.rms[k], same.rms[k]);
+    }
+  // Soaks that somebody else chose have seen no device.
+  EXPECT_EQ(planner.judged(plan.temperatures).expected.median,
+            forecast_of(same).median);
+}
+
+TEST(Planner, CountsTheNoiseOfTheTemperatureWhereTheBiasIsSteep) {
+  // What 0.1 K makes of the slope is as much noise of each soak.
+  const SoakModel model = model_of(population(), true);
+  const std::vector<double> soaks = {5.0, 33.0};
+  const Eigen::VectorXd slope = model.slope(soaks);
+  EXPECT_GT(slope(0), 2.0 * slope(1));  // steep in the cold
+  const auto median = [&](const std::vector<double>& at, double temperature) {
+    return Planner(model, population().range(), {},
+                   {.rows = {SoakRows{5, 0.0}},
+                    .noise = SlowNoise{.own = 0.01},
+                    .temperature_noise = temperature})
+        .judged(at)
+        .expected.median;
+  };
+  Eigen::MatrixXd noise = Eigen::MatrixXd::Zero(2, 5);
+  for (Eigen::Index k = 0; k < 2; ++k)
+    noise(k, 3 + k) = std::hypot(0.01, 0.1 * slope(k));
+  EXPECT_NEAR(median(soaks, 0.1),
+              forecast_residual(model, soaks, {{0.0, 0.0}, noise}).median,
+              1e-9);
+  // Of so few soaks something else is left; of many it is the noise.
+  const std::vector<double> many = {0, 5, 10, 15, 20, 25, 30, 35, 40};
+  EXPECT_GT(median(many, 0.1), 1.2 * median(many, 0.0));
 }
 
 TEST(SoakModel, RefusesARangeThatThePopulationDoesNotKnow) {

@@ -22,6 +22,7 @@ Population with_own_parts() {
   p.devices = 30;
   p.own = {{0.02, 10.0}, {0.5, 20.0}};
   p.point_noise = 0.004;
+  p.sweeps = {2.0, 870.0};
   return p;
 }
 
@@ -33,6 +34,8 @@ TEST(PopulationJson, OwnPartsAndNoiseComeBack) {
   const Population p = with_own_parts();
   const Population back = read(population_json(p));
   EXPECT_EQ(back.point_noise, p.point_noise);
+  EXPECT_EQ(back.sweeps->of_each_device, 2.0);
+  EXPECT_EQ(back.sweeps->seconds_per_K, 870.0);
   EXPECT_EQ(all_modes(back), all_modes(p));
   EXPECT_EQ(all_modes(back).cols(), 1 + 4 + 4);
 }
@@ -42,9 +45,11 @@ TEST(PopulationJson, WithoutThemDevicesHaveNothingOfTheirOwn) {
   Json json = population_json(with_own_parts());
   json.erase("own");
   json.erase("point_noise_deg_per_s");
+  json.erase("sweeps");
   const Population back = read(json);
   EXPECT_TRUE(back.own.empty());
   EXPECT_EQ(back.point_noise, 0.03);
+  EXPECT_FALSE(back.sweeps.has_value());
 }
 
 TEST(PopulationJson, RefusesOwnPartsThatAreNone) {
@@ -57,6 +62,8 @@ TEST(PopulationJson, RefusesOwnPartsThatAreNone) {
                     "mine.json: own: 1 own parts, must be none or 2"));
   EXPECT_TRUE(holds(message([](Json& j) { j["own"][0]["deviation"] = -1; }),
                     "own[0].deviation: -1, must not be negative"));
+  EXPECT_TRUE(holds(message([](Json& j) { j["sweeps"]["s_per_K"] = 0; }),
+                    "sweeps.s_per_K: 0"));
   EXPECT_TRUE(holds(message([](Json& j) { j["own"][1]["length_K"] = 0; }),
                     "own[1].length_K"));
   EXPECT_TRUE(holds(message([](Json& j) { j["own"][1]["L"] = 1; }), "own[1]"));

@@ -77,6 +77,34 @@ Population one_mode(bool quadrature) {
   return p;
 }
 
+TEST(Population, KnowsHowLongItsSweepsTook) {
+  // A row a minute, 5 K apart, a run of each device.
+  const Population once = of_parabolas();
+  ASSERT_TRUE(once.sweeps.has_value());
+  EXPECT_NEAR(once.sweeps->seconds_per_K, 12.0, 1e-9);
+  EXPECT_NEAR(once.sweeps->of_each_device, 1.0, 1e-12);
+  // Runs of half of the temperatures are no sweeps.
+  TrainingRows rows = rows_at(kDevices, every_five_kelvins());
+  for (Index k = 0; k < rows.size(); ++k)
+    rows.run(k) = 2 * rows.device(k) + (rows.temperature(k) > 0.0 ? 1 : 0);
+  EXPECT_FALSE(fit_population(kWithQuadrature, rows, 5.0).sweeps.has_value());
+}
+
+TEST(Population, TrueHysteresisIsWithoutTheNoiseOfTwoPoints) {
+  Population p = one_mode(false);
+  p.hysteresis = MatrixXd::Constant(100, 10, 0.05);
+  p.hysteresis.col(0).setConstant(-0.05);
+  // 0.1 deg/s between the ways, less 0.03 deg/s of each.
+  EXPECT_NEAR(hysteresis_rms(p), std::sqrt(0.01 - 2 * 9e-4), 1e-12);
+  const MatrixXd half = true_hysteresis(p);
+  EXPECT_NEAR(half(7, 0), -0.5 * hysteresis_rms(p), 1e-12);
+  EXPECT_NEAR(half(99, 9), 0.5 * hysteresis_rms(p), 1e-12);
+  p.hysteresis.setConstant(0.01);
+  EXPECT_EQ(true_hysteresis(p).cwiseAbs().maxCoeff(), 0.0);
+  p.hysteresis.resize(0, 0);
+  EXPECT_EQ(true_hysteresis(p).size(), 0);
+}
+
 TEST(Population, MeanAndCovarianceAreThoseOfTheCurves) {
   const Population p = of_parabolas();
   EXPECT_EQ(p.devices, 5);
