@@ -6,8 +6,7 @@
 #             sanitizers where bytes are parsed, memory is owned or threads run,
 #             with the assertions of Eigen and of the standard library everywhere
 #   threads   what the program does on several threads, thread sanitizer
-#   fuzz      every reader of files but those of HDF5, a minute of changed
-#             inputs each
+#   fuzz      every reader of files, a minute of changed inputs each
 #   tidy      clang-tidy on every source
 #   deep      the benchmarks, compiled; the tests marked `deep`: packages, the site
 #             of the pages, a browser, Slurm, Octave, an emulated Cortex-M4, more
@@ -101,12 +100,8 @@ if wanted threads; then
   fi
 fi
 if wanted fuzz; then
-  # Within HDF5 recordings and files of sets still meet reads beyond buffers
-  # (CONTRIBUTING.md): these two targets are for scripts/fuzz.sh alone.
-  mapfile -t readers < <(find tests/fuzz -name '*_fuzz.cpp' -printf '%f\n' |
-    sed 's/_fuzz.cpp//' | grep -vx -e recording -e shard | sort)
-  script fuzz scripts/fuzz.sh \
-    $(((${#readers[@]} + $(nproc) - 1) / $(nproc))) "${readers[@]}"
+  readers=(tests/fuzz/*_fuzz.cpp)
+  script fuzz scripts/fuzz.sh $(((${#readers[@]} + $(nproc) - 1) / $(nproc)))
 fi
 wanted tidy && tidy
 # The benchmarks, too, which nothing else compiles.

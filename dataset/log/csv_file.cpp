@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
 #include "dataset/files/number_text.h"
@@ -95,13 +96,13 @@ class CsvReader {
   }
 
   void take_names() {
+    std::set<std::string_view> met;
     for (const Cell& cell : cells_) {
       std::string_view name = cell.text;
       if (name.size() >= 2 && name.front() == '"' && name.back() == '"')
         name = name.substr(1, name.size() - 2);
       if (name.empty()) fail(cell.column, "a column without a name");
-      if (std::find(table_.names.begin(), table_.names.end(), name) !=
-          table_.names.end())
+      if (!met.insert(name).second)
         fail(cell.column,
              fmt::format("two columns are called {}", shown(name)));
       table_.names.emplace_back(name);

@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "config/config_node.h"
+#include "config/cut_text.h"
 #include "config/suggestion.h"
 #include "dataset/log/log_advice.h"
 
@@ -37,8 +38,12 @@ bool equal_but_for_case(std::string_view a, std::string_view b) {
 }
 
 std::string listed(std::vector<std::string> names) {
+  constexpr std::size_t kLongestList = 4000;
   for (std::string& name : names) name = printable(name);
-  return fmt::format("{}", fmt::join(names, ", "));
+  const std::string all = fmt::format("{}", fmt::join(names, ", "));
+  if (all.size() <= kLongestList) return all;
+  return fmt::format("{}..., {} columns in all", cut_text(all, kLongestList),
+                     names.size());
 }
 
 // Column of the text that `column` of the map means, from 0.
