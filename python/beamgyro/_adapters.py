@@ -15,6 +15,7 @@ import numpy as np
 
 from beamgyro import _arguments, _checks, _core, _lazy
 from beamgyro._dataset import dataset_of
+from beamgyro._warnings import warn
 
 _Answer = tuple["np.ndarray[Any, Any]", Optional["np.ndarray[Any, Any]"]]
 Answering = Callable[[_core.Recording, str], _Answer]
@@ -46,6 +47,9 @@ def inputs_of(thing: object,
     for name, given in names.items():
         if given is not None:
             return _checks.some_texts(given, name)
+    if is_estimator(thing) or is_torch_module(thing):
+        warn([f"{type(thing).__name__}: states no inputs, so it is given the "
+              "temperature; expected inputs=[\"temperature\"]"])
     return list(DEFAULT_INPUTS)
 
 
@@ -77,6 +81,10 @@ def _split(answer: Any, what: str, time: np.ndarray[Any, Any]) -> _Answer:
             "rates, or (rates, sigmas)")
     rates, sigmas = answer
     for one in answer:
+        if hasattr(one, "data_vars"):
+            raise ValueError(
+                f"the answer of {what}: is a dataset; expected an array of "
+                "rates, such as dataset[\"rate\"]")
         _require_times(one, what, time)
     return (_numbers(rates, what),
             None if sigmas is None else _numbers(sigmas, what))

@@ -17,6 +17,7 @@ from beamgyro._dataset import Path, dataset_of
 from beamgyro._device import Device, Keys
 from beamgyro._native import Native, Wrapper
 from beamgyro._progress import ProgressArgument, watched
+from beamgyro._results import table as html_table
 from beamgyro._scenario import Scenario
 from beamgyro._warnings import warn
 
@@ -94,15 +95,10 @@ def _campaign_of_keys(keys: Keys, count: Optional[int]) -> _core.Campaign:
     with tempfile.TemporaryDirectory() as folder:
         table = dict(keys)
         if "device" in table:
-            table["device"] = _part(table["device"], folder, "device")
-        if not _is_sequence_of_tables(table.get("run", [])):
-            raise ValueError("campaign: run: expected a sequence of mappings "
-                             "with name and scenario")
-        table["run"] = [
-            {**run, "scenario": _part(run["scenario"], folder,
-                                      f"scenario_{number}")}
-            if "scenario" in run else dict(run)
-            for number, run in enumerate(table.get("run", []))]
+            table["device"] = written_part(table["device"], folder, "device",
+                                           "campaign")
+        table["run"] = with_written_scenarios(table.get("run", []), folder,
+                                              "run", "campaign")
         path = FilePath(folder) / "campaign.toml"
         path.write_text(_toml.text(table), encoding="utf-8")
         try:
@@ -113,29 +109,41 @@ def _campaign_of_keys(keys: Keys, count: Optional[int]) -> _core.Campaign:
         [(_without(place, folder), text) for place, text in files], count)
 
 
-def _is_sequence_of_tables(value: Any) -> bool:
-    return isinstance(value, (list, tuple)) and all(
-        isinstance(one, Mapping) for one in value)
+def written_part(source: Any, folder: str, name: str, whole: str) -> str:
+    """Return the path of a file, or of one that is written to `folder`.
 
-
-def _part(source: Any, folder: str, name: str) -> str:
-    """The path of a file, or of one that is written of keys or an object."""
+    `source` is a file, named from the current directory, or keys or an object
+    of beamgyro; `whole` is what it is a part of, for messages.
+    """
     if isinstance(source, (str, os.PathLike)):
         return os.path.abspath(os.fspath(source))
     path = FilePath(folder) / f"{name}.toml"
     if isinstance(source, (Device, Scenario)):
         if source.overrides:
-            raise ValueError(f"campaign: {name}: {source!r}: has replaced keys;"
-                             " expected a mapping with them, or the file")
+            raise ValueError(f"{whole}: {name}: {source!r}: has replaced keys; "
+                             "expected a mapping with them, or the file")
         path.write_text(source.text, encoding="utf-8")
     elif _checks.is_table(source):
-        table = {key: _part(part, folder, f"{name}_device")
+        table = {key: written_part(part, folder, f"{name}_device", whole)
                  if key == "device" else part for key, part in source.items()}
         path.write_text(_toml.text(table), encoding="utf-8")
     else:
-        raise _checks.wrong(source, f"campaign: {name}",
+        raise _checks.wrong(source, f"{whole}: {name}",
                             "a file, a mapping or an object of beamgyro")
     return path.name  # as seen from the file that names it
+
+
+def with_written_scenarios(runs: Any, folder: str, name: str,
+                           whole: str) -> list[dict[str, Any]]:
+    """Return tables of runs whose scenarios are files; see written_part."""
+    if not isinstance(runs, (list, tuple)) or not all(
+            isinstance(one, Mapping) for one in runs):
+        raise ValueError(f"{whole}: {name}: expected a sequence of mappings "
+                         "with name and scenario")
+    return [{**run, "scenario": written_part(
+        run["scenario"], folder, f"{name}_{number}_scenario", whole)}
+            if "scenario" in run else dict(run)
+            for number, run in enumerate(runs)]
 
 
 def _without(place: Any, folder: str) -> FilePath:
@@ -382,6 +390,18 @@ class Set(Wrapper, Mapping[tuple[str, int], "xr.Dataset"]):
     def __repr__(self) -> str:
         return (f"<beamgyro.Set {self.directory}: {self.devices} devices, "
                 f"runs {', '.join(self.runs)}>")
+
+    def _repr_html_(self) -> str:
+        parts = {part: len(self.devices_of(part))
+                 for part in ("train", "validation", "test")}
+        rows = [("directory", str(self.directory)),
+                ("runs", ", ".join(self.runs)),
+                ("devices", f"{self.devices}: " + ", ".join(
+                    f"{count} {part}" for part, count in parts.items())),
+                ("without values", f"{len(self.failures)} of "
+                 f"{self.devices * len(self.runs)} runs"),
+                ("seed", str(self.seed))]
+        return html_table(("set", ""), rows)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Set, (str(self.directory),)

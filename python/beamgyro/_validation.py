@@ -16,7 +16,7 @@ from beamgyro._dataset import Path, recording_of
 from beamgyro._device import DeviceLike, device_of
 from beamgyro._own_metrics import own_metrics
 from beamgyro._progress import ProgressArgument, watched
-from beamgyro._set import Set
+from beamgyro._set import Set, with_written_scenarios
 from beamgyro._training import Runs, model_of, named_runs
 from beamgyro._validation_result import ValidationResult
 from beamgyro._warnings import warn
@@ -82,6 +82,29 @@ class _Files:
                                ) from None
         return path
 
+    def of_qualification(self, name: str,
+                         table: Union[Path, Mapping[str, Any]],
+                         kind: str) -> str:
+        """Return the file of a nested mapping, whose scenarios are files named
+        from the current directory, mappings or objects; or of a kind."""
+        if not _checks.is_table(table):
+            return self.of_table(name, table, kind)
+        folder = os.path.dirname(self._path(name))
+        return self.of_text(name, _toml.text({
+            **table, **{part: with_written_scenarios(table[part], folder,
+                                                     part, name)
+                        for part in ("run", "training") if part in table}}))
+
+    def of_specification(self, name: str,
+                         table: Union[Path, Mapping[str, Any]],
+                         kind: str) -> str:
+        """Return the file of a nested mapping, which needs no name and no
+        source of its limits; or of a kind."""
+        if not _checks.is_table(table):
+            return self.of_table(name, table, kind)
+        return self.of_table(
+            name, {"name": "mine", **_with_sources(table)}, kind)
+
     def of_table(self, name: str, table: Union[Path, Mapping[str, Any]],
                  kind: str) -> str:
         """Return the file of a nested mapping, or of a kind."""
@@ -110,8 +133,8 @@ def validate(compensator: Any, runs: Optional[Runs] = None, *,
         jobs: threads; 0: one for each core.
         progress: True for a bar on standard error, or a function that is
             called with the share of the work that is done, from 0 to 1.
-        options: further options, below. A specification may also be a
-            mapping with its contents.
+        options: further options, below. A specification or a
+            qualification may also be a mapping with its contents.
 
     Returns:
         The result, which prints as a table; ``passed`` tells the verdict.
@@ -152,6 +175,19 @@ def validate(compensator: Any, runs: Optional[Runs] = None, *,
         Compensator.parse(trained, "trained.json") if trained else None)
 
 
+def _with_sources(table: Mapping[str, Any]) -> dict[str, Any]:
+    """A specification whose limits state where they come from."""
+    def sourced(part: Any) -> Any:
+        if not isinstance(part, Mapping):
+            return part
+        if "min" in part or "max" in part:
+            return {**part, "source": part.get("source", "not stated")}
+        return {name: sourced(inner) for name, inner in part.items()}
+
+    return {name: sourced(part) if name.startswith("limits") else part
+            for name, part in table.items()}
+
+
 class _Option(NamedTuple):
     """An option of `validate`, from the table of the compiled part."""
 
@@ -166,7 +202,9 @@ class _Option(NamedTuple):
         """Return a value of its type."""
         if self.type == "file":
             if self.kind == "a specification":
-                return files.of_table(self.keyword, value, self.kind)
+                return files.of_specification(self.keyword, value, self.kind)
+            if self.kind == "a qualification":
+                return files.of_qualification(self.keyword, value, self.kind)
             if not self.kind:
                 return _checks.path(value, self.keyword)
             return _checks.file(value, self.keyword, self.kind)

@@ -69,9 +69,10 @@ class Columns:
         """Return inputs (sample, input), targets, and whether both count."""
         arrays = recording.arrays()
         features = [name for name in self.inputs if name not in arrays]
-        computed = (_core.features(features, recording).T if features
-                    else ())
-        found = {**arrays, **dict(zip(features, computed))}
+        found = dict(arrays)
+        if features:
+            found.update(zip(features,
+                             _core.features(features, recording).T))
         target = (arrays["rate"] - arrays["true_rate"]
                   if self.target == BIAS else arrays[self.target])
         return (np.stack([found[name] for name in self.inputs], axis=-1),
@@ -122,7 +123,8 @@ class Windows:
         bad = np.concatenate([[0], np.cumsum((status & _NO_SAMPLE) != 0)])
         starts = np.arange(0, status.size - self.window + 1, step,
                            dtype=np.int32)
-        return starts[bad[starts] == bad[starts + self.window]]
+        good: Array = starts[bad[starts] == bad[starts + self.window]]
+        return good
 
     def __len__(self) -> int:
         return len(self._starts)
