@@ -66,8 +66,8 @@ class OfOneGyro(ProgramTest):
         self.ok("run", "soaks.toml", "-o", "more.h5", "--seed", 4)
         for runs, is_warned in [(["soaks.h5"], True),
                                 (["soaks.h5", "more.h5"], False)]:
-            self.assertEqual("sigma is too small by what all soaks of this one "
-                             "run share" in self.warned(
+            self.assertEqual("the stated sigma leaves out the turn-on offset and "
+                             "the slow noise that all soaks" in self.warned(
                                  "train", *runs, "--model", "spline.toml", "-o",
                                  "again.json"), is_warned)
 
