@@ -122,7 +122,8 @@ std::uint64_t Scenario::seed() const { return content().loaded.scenario.seed; }
 double Scenario::estimated_seconds() const {
   const internal::ScenarioPlan& scenario = content().loaded.scenario;
   return scenario.fidelity == internal::Fidelity::kCarrier
-             ? internal::carrier_cost(scenario)
+             ? internal::carrier_cost(
+                   scenario, content().gyro.of(content().loaded.device))
              : 0.0;
 }
 

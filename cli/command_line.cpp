@@ -274,15 +274,35 @@ Action CommandLine::help(const std::vector<std::string>& words) const {
   return printing(std::move(text));
 }
 
+// "-out f" is "-o ut" and a word too many.
+std::string CommandLine::run_on_advice(const std::vector<std::string>& words,
+                                       const Command& command,
+                                       const std::string& left) const {
+  const auto found = std::ranges::find(words, left);
+  if (found == words.begin() || found == words.end()) return "";
+  const std::string& before = *(found - 1);
+  if (before.size() < 3 || before[0] != '-' || before[1] == '-') return "";
+  const Command::Option* const option =
+      find_option(before.substr(0, 2), &command);
+  if (option == nullptr || option->count == Command::Count::kNone) return "";
+  return fmt::format("\"{}\" is {} with the value \"{}\"; expected {} {}",
+                     before, before.substr(0, 2), before.substr(2),
+                     before.substr(0, 2), left);
+}
+
 void CommandLine::split(const Command& command,
                         std::vector<std::string> words) {
+  const std::vector<std::string> given = words;
   try {
     std::ranges::reverse(words);  // the order in which CLI11 takes them
     app_->parse(words);
   } catch (const CLI::ExtrasError&) {
-    throw std::invalid_argument(fmt::format("unexpected \"{}\"; expected {}",
-                                            app_->remaining(true).front(),
-                                            usage(command.help_)));
+    const std::string left = app_->remaining(true).front();
+    const std::string advice = run_on_advice(given, command, left);
+    throw std::invalid_argument(
+        advice.empty() ? fmt::format("unexpected \"{}\"; expected {}", left,
+                                     usage(command.help_))
+                       : advice);
   } catch (const CLI::ArgumentMismatch&) {
     throw std::invalid_argument(
         fmt::format("too many words; expected {}", usage(command.help_)));

@@ -185,6 +185,9 @@ class CommandLine {
                                      const Command* command) const;
   std::size_t look_at_option(const std::vector<std::string>& words,
                              std::size_t at, Words& found) const;
+  std::string run_on_advice(const std::vector<std::string>& words,
+                            const Command& command,
+                            const std::string& left) const;
   void split(const Command& command, std::vector<std::string> words);
   [[noreturn]] void fail_option(const std::string& name,
                                 const Command* command) const;

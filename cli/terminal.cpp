@@ -29,7 +29,9 @@ std::atomic<std::size_t> interrupt_note_size = 0;
 
 bool colour_wanted() {
   const char* no_colour = std::getenv("NO_COLOR");
-  return isatty(STDERR_FILENO) == 1 && !(no_colour && *no_colour);
+  const char* terminal = std::getenv("TERM");
+  return isatty(STDERR_FILENO) == 1 && !(no_colour && *no_colour) &&
+         !(terminal && std::string_view(terminal) == "dumb");
 }
 
 /// Returns the length of the UTF-8 character at the start of `text`, or 0 when

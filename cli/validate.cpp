@@ -196,6 +196,7 @@ void add_validate(CommandLine& program) {
                  "the number of a device to judge, which may be repeated",
                  "the test devices of a set"},
                 arguments.device);
+  command.reads({{FileKind::kDevice}});
   for (const ValidationMember& row : validation_members())
     if (!row.option.empty()) add_member(row, command, arguments.options);
   command.group("What is written");

@@ -56,8 +56,9 @@ std::string advice(const DocumentState& document, const std::string& path,
   const std::vector<std::string> here = document.known_keys_in(path);
   const std::string near = suggestion(key, here);
   if (!near.empty()) return fmt::format("did you mean '{}'?", near);
+  // An axis, x, has the same name in tables that have nothing in common.
   for (const std::string& other : document.known_keys) {
-    if (other.ends_with('.' + key))
+    if (key.size() > 1 && other.ends_with('.' + key))
       return fmt::format("did you mean '{}'?", other);
   }
   const std::string place = path.empty() ? "this file" : '[' + path + ']';

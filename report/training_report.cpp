@@ -25,22 +25,27 @@ void print_equation_one(const BiasModel& model, const char* label,
     return;
   }
   for (std::size_t i = 0; i < equation.coefficients.size(); ++i) {
-    fmt::format_to(out, ", a{} = {:.6g} K^-{}", i + 1, equation.coefficients[i],
-                   i + 1);
+    fmt::format_to(out, ", a{} = {:.6g}/K", i + 1, equation.coefficients[i]);
+    if (i > 0) fmt::format_to(out, "^{}", i + 1);
   }
   text += '\n';
 }
 
+// Why a restart ended is said where it is not what the chosen one ended by,
+// which has a line of its own.
 void print_restarts(const TrainResult& result, std::string& text) {
   auto out = std::back_inserter(text);
   for (std::size_t k = 0; k < result.restarts.size(); ++k) {
     const TrainSummary& summary = result.restarts[k];
+    const bool is_other =
+        summary.stop_reason != result.restarts[result.chosen].stop_reason;
     fmt::format_to(out,
                    "restart {}{}: {} epochs, best {}, rms in-sample {:.6f}, "
-                   "held-out {} deg/s; {}\n",
+                   "held-out {} deg/s{}{}\n",
                    k + 1, k == result.chosen ? " (kept)" : "", summary.epochs,
                    summary.best_epoch, summary.in_sample_rms,
-                   shown(summary.held_out_rms), sentence(summary.stop_reason));
+                   shown(summary.held_out_rms), is_other ? ";\n  " : "",
+                   is_other ? sentence(summary.stop_reason) : "");
   }
 }
 

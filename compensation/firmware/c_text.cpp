@@ -39,8 +39,9 @@ std::string c_identifier(const std::string& text) {
   return fmt::format("c_{}", name);
 }
 
+// Without '*' a '/' neither ends a comment nor begins one within it.
 std::string c_comment(const std::string& text) {
-  return with_underscores(text, " ().,:;+-=%");
+  return with_underscores(text, " ().,:;+-=%/");
 }
 
 std::string c_string(std::string_view text) {

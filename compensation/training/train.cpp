@@ -209,8 +209,8 @@ void add_sigma_caution(const BiasSigma& sigma, const TrainingRows& rows,
       rows.cycle.maxCoeff() > rows.cycle.minCoeff())
     return;
   warnings.push_back(fmt::format(
-      "sigma is too small by what all {}s of this one run share, turn-on "
-      "offset and slow noise: hold out runs to calibrate it",
+      "the stated sigma leaves out the turn-on offset and the slow noise that "
+      "all {}s of this one run share: hold out runs to calibrate it",
       sigma.calibration.by));
 }
 

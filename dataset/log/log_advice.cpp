@@ -28,6 +28,15 @@ bool is_first_line_of_words(const LogText& log) {
          std::none_of(cells.begin(), cells.end(), begins_like_number);
 }
 
+// A cell of letters, as within a header, and not a lone mark such as "-".
+bool has_words_only(const LogText& log, std::string_view cell) {
+  const auto is_letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+  };
+  return !log.names().empty() && cell.size() > 3 &&
+         std::ranges::all_of(cell.substr(0, 4), is_letter);
+}
+
 // The beginning of the row, which ends with a whole cell.
 std::string_view beginning_of(std::string_view row, char delimiter) {
   constexpr std::size_t kMost = 40;
@@ -118,7 +127,16 @@ std::string number_advice(const LogText& log, char decimal,
         log.skipped_rows() + 1);
   }
   if (cell.find_first_of(kDigits) == cell.npos)
-    return "one such as -12.5, or the text among missing_markers in the map";
+    return has_words_only(log, cell)
+               ? fmt::format(
+                     "one such as -12.5, or in the map the text among "
+                     "missing_markers, comment_prefixes for a comment, "
+                     "repeated_header = \"{}\" for the first line of "
+                     "a header that is repeated in the log",
+                     printable(log.all_cells().front()))
+               : std::string(
+                     "one such as -12.5, or the text among "
+                     "missing_markers in the map");
   if (const std::string number = without_fortran(cell); !number.empty())
     return fmt::format("one such as {}, with e before the exponent", number);
   if (looks_like_date(cell))
@@ -156,6 +174,10 @@ std::string width_advice(const LogText& log, const LogLayout& layout) {
                        expected, with_delimiter(log, other), rows_above(layout),
                        kByNumber);
   }
+  if (log.is_short() && log.cells() > 1)
+    return expected +
+           " (or rules.ragged = \"fill\", which reads the cells that lack as "
+           "empty, or \"drop\", in the map)";
   return expected + " (or rules.ragged = \"drop\" in the map)";
 }
 
@@ -164,6 +186,9 @@ std::string name_advice(const LogText& log, const std::string& column) {
   if (!is_ascii(column) && !std::all_of(names.begin(), names.end(), is_utf8))
     return "; the log is not UTF-8; expected UTF-8, or the number of the "
            "column";
+  if (const std::size_t line = log.line_holding(column))
+    return fmt::format("; line {} holds it: header_line = {} in the map", line,
+                       line);
   if (names.size() > 1) return "";
   const char other = other_delimiter(names.front(), log.delimiter(), 0);
   if (other == 0) return "";

@@ -21,7 +21,8 @@ constexpr long kMostColumns = 100000;
 std::vector<std::string> known_units(std::string_view units) {
   if (units == "degree/s")
     return {"deg/s", "deg/h", "rad/s", "mrad/s", "V", "mV", "counts"};
-  if (units == "degC") return {"degC", "degF", "K", "V", "mV", "counts"};
+  if (units == "degC")
+    return {"degC", "degF", "K", "V", "mV", "counts", "ohm", "kohm"};
   if (units == "Hz") return {"Hz", "kHz"};
   return {"V", "mV"};
 }
@@ -113,6 +114,7 @@ bool LogQuantity::fits(double raw) const {
 double LogQuantity::value(double raw) const {
   if (wrap_bits > 0 && raw >= std::ldexp(1.0, wrap_bits - 1))
     raw -= std::ldexp(1.0, wrap_bits);
+  if (thermistor) return thermistor->temperature(raw * scale);
   return (raw - offset) * scale + shift;
 }
 
@@ -153,6 +155,14 @@ LogQuantity read_log_quantity(const ConfigTable& table,
   if (is_temperature) quantity.plausible = between(kColdest, kWarmest);
   const bool is_raw =
       is_counts || quantity.unit == "V" || quantity.unit == "mV";
+  const bool is_resistance = quantity.unit == "ohm" || quantity.unit == "kohm";
+  if (is_temperature &&
+      (is_resistance || (is_raw && table.has("thermistor")))) {
+    if (quantity.unit == "kohm") quantity.scale = 1000;
+    quantity.thermistor =
+        read_thermistor(table.table("thermistor"), is_resistance);
+    return quantity;
+  }
   if (is_raw && (is_rate || is_temperature)) {
     quantity.scale = read_scale(table, is_rate ? "scale_deg_per_s" : "scale_K");
     if (is_temperature) quantity.shift = table.number("offset_degC");

@@ -10,6 +10,7 @@
 #include "config/range.h"
 #include "config/table.h"
 #include "dataset/log/log_date.h"
+#include "dataset/log/thermistor.h"
 #include "dataset/recording/signals.h"
 
 namespace beamgyro::internal {
@@ -34,6 +35,7 @@ struct LogQuantity {
   double scale = 1;        // [units per unit]
   double shift = 0;        // [units]
   int wrap_bits = 0;       // 0: not wrapped
+  std::optional<Thermistor> thermistor = {};  // in place of the equation above
   Range plausible = any();
   bool joined = false;  // from the log that the map joins
 

@@ -22,6 +22,18 @@ namespace beamgyro::internal {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// What a thermistor can read.
+std::string thermistor_readings(const Thermistor& thermistor) {
+  return thermistor.divider
+             ? fmt::format(
+                   "a number between 0 and full_scale = {}, which mean "
+                   "a short and an open thermistor, or it among "
+                   "missing_markers in the map",
+                   thermistor.divider->full_scale)
+             : "a resistance above 0";
+}
+
 // Converts the rows of a log to a recording.
 class LogReader {
  public:
@@ -68,7 +80,8 @@ class LogReader {
 
   void take_row() {
     ++counts_.rows;
-    if (!log_.text().is_whole()) {
+    if (!log_.text().is_whole() &&
+        !(map_.rules.fill_short && log_.text().is_short())) {
       if (map_.rules.drop_ragged) {
         if (!filter_) clock_.skip_row();
         return drop(DropReason::kRagged);
@@ -172,6 +185,9 @@ class LogReader {
                               std::ldexp(1.0, quantity.wrap_bits) - 1));
       }
       values_[i] = quantity.value(*raw);
+      if (quantity.thermistor && std::isnan(values_[i]))
+        log_.fail(slots_[i], "is no reading of this thermistor",
+                  thermistor_readings(*quantity.thermistor));
       if (!std::isfinite(values_[i]))
         log_.fail(slots_[i], "is out of range", "a smaller number");
     }

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "config/config_node.h"
 #include "config/option_message.h"
 #include "dataset/recording/units.h"
 
@@ -31,6 +32,17 @@ LogLayout read_layout(const ConfigTable& root) {
         root.integer_or("header_line", 0, 1, kLongest));
   } else {
     static_cast<void>(root.has("header_line"));
+  }
+  if (layout.header) {
+    if (const auto begin = root.optional_text("repeated_header")) {
+      if (begin->empty())
+        root.fail("repeated_header",
+                  "\"\" begins every line; expected the text with which a "
+                  "header within the log begins, such as \"Channels\"");
+      layout.repeated_header = *begin;
+    }
+  } else {
+    static_cast<void>(root.has("repeated_header"));
   }
   layout.skip_rows =
       static_cast<std::size_t>(root.integer_or("skip_rows", 0, 0, kLongest));
@@ -57,6 +69,17 @@ LogFilter read_filter(const ConfigTable& table) {
   return filter;
 }
 
+[[noreturn]] void reject_other_axes(const ConfigTable& gyro) {
+  const std::vector<std::string> keys = gyro.keys();
+  gyro.fail("column",
+            keys.empty() || gyro.has("unit")
+                ? "missing; expected the name of the column in quotes"
+                : fmt::format("missing, and '{}' is no axis; expected "
+                              "[gyro] with a column, or [gyro.x], [gyro.y], "
+                              "[gyro.z]",
+                              printable(keys.front())));
+}
+
 // Reads every axis, so that a mistake in one that was not asked for is found,
 // too.
 LogQuantity read_gyro(const ConfigTable& root, const std::string& axis) {
@@ -70,6 +93,7 @@ LogQuantity read_gyro(const ConfigTable& root, const std::string& axis) {
     }
   }
   if (axes.empty()) {
+    if (!gyro.has("column")) reject_other_axes(gyro);
     if (!axis.empty()) {
       throw option_error("{}: {}: has no axes; expected no {}",
                          NamedOption{"axis", axis}, root.place("gyro"),
@@ -98,7 +122,10 @@ LogRules read_rules(const ConfigTable& table) {
     return table.choice_or(key, otherwise ? word : "error", {word, "error"}) ==
            word;
   };
-  rules.drop_ragged = drops("ragged", "drop", false);
+  const std::string ragged =
+      table.choice_or("ragged", "error", {"drop", "fill", "error"});
+  rules.drop_ragged = ragged == "drop";
+  rules.fill_short = ragged == "fill";
   rules.drop_missing = drops("missing", "drop", true);
   rules.drop_duplicates = drops("duplicates", "drop_later", true);
   rules.drop_backward = drops("backward", "drop", false);

@@ -45,6 +45,7 @@ struct OutlierRule {
 /// Whether rows with a defect are dropped; otherwise they are errors.
 struct LogRules {
   bool drop_ragged = false;
+  bool fill_short = false;  // cells that a row lacks at its end are empty
   bool drop_missing = true;
   bool drop_duplicates = true;  // a time equal to that of the last row kept
   bool drop_backward = false;   // a time before it

@@ -68,12 +68,16 @@ std::size_t index_of(const LogColumn& column, const LogText& text,
   }
   const auto found = std::find(names.begin(), names.end(), column.name);
   if (found == names.end()) {
-    const std::string near = suggestion(column.name, names);
+    const std::string advice = name_advice(text, column.name);
+    // One of another encoding cannot be written in a map.
+    const std::string near = advice.find("UTF-8") == advice.npos
+                                 ? suggestion(column.name, names)
+                                 : "";
     reject(fmt::format(
         "{} has no column \"{}\"; {}it has {}{}", path, printable(column.name),
         near.empty() ? ""
                      : fmt::format("did you mean \"{}\"? ", printable(near)),
-        listed(names), name_advice(text, column.name)));
+        listed(names), advice));
   }
   if (std::find(found + 1, names.end(), column.name) != names.end()) {
     reject(fmt::format("{} has two columns \"{}\"; expected the number of one",

@@ -38,6 +38,17 @@ char delimiter_of(std::string_view line, char decimal) {
   return trimmed(line).find(' ') != line.npos || decimal == ',' ? ' ' : ',';
 }
 
+// Whatever the delimiter is.
+bool holds_cell(std::string_view line, std::string_view word) {
+  while (!line.empty()) {
+    const std::size_t end =
+        std::min(line.find_first_of("\t;,|\r"), line.size());
+    if (unquoted(trimmed(line.substr(0, end))) == word) return true;
+    line.remove_prefix(std::min(end + 1, line.size()));
+  }
+  return false;
+}
+
 struct BinaryKind {
   std::string_view magic;  // its first bytes
   const char *what, *expected;
@@ -132,11 +143,36 @@ void LogText::start() {
 void LogText::read_names() {
   const std::vector<std::string_view> cells = quoted_cells();
   names_ = all_cells();
+  names_row_ = row_;
   width_ = names_.size();
   if (std::all_of(cells.begin(), cells.end(), is_number))
     fail_at(1, fmt::format("{} is a number; expected the line of names (or "
                            "header = false in the map)",
                            shown_cell(cells.front())));
+}
+
+bool LogText::is_repeated_header(std::string_view line) const {
+  return !names_row_.empty() && !layout_.repeated_header.empty() &&
+         line.starts_with(layout_.repeated_header);
+}
+
+// Reads on to the next line of names, which it leaves out, too.
+void LogText::skip_repeated_header() {
+  const std::size_t first = line_;
+  const auto next = [this] {
+    const std::size_t end = std::min(rest_.find(line_end_), rest_.size());
+    std::string_view line = rest_.substr(0, end);
+    rest_.remove_prefix(std::min(end + 1, rest_.size()));
+    ++line_;
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    return line;
+  };
+  while (!rest_.empty())
+    if (trimmed(next()) == trimmed(names_row_)) return;
+  throw std::invalid_argument(fmt::format(
+      "{}:{}:1: a header that no line of names ends; expected the line {} "
+      "below it, or another repeated_header in the map",
+      path_, first, shown_cell(trimmed(names_row_))));
 }
 
 bool LogText::next_line() {
@@ -153,6 +189,10 @@ bool LogText::next_line() {
     std::size_t first = 0;
     while (first < row_.size() && row_[first] == ' ') ++first;
     const std::string_view shown = row_.substr(first);
+    if (is_repeated_header(shown)) {
+      skip_repeated_header();
+      continue;
+    }
     const bool is_comment = std::any_of(
         layout_.comment_prefixes.begin(), layout_.comment_prefixes.end(),
         [&](const auto& prefix) { return shown.starts_with(prefix); });
@@ -207,6 +247,17 @@ std::vector<std::string> LogText::all_cells() const {
   return cells;
 }
 
+std::size_t LogText::line_holding(std::string_view word) const {
+  constexpr std::size_t kMost = 100;
+  std::string_view rest = rest_;
+  for (std::size_t k = 1; k <= kMost && !rest.empty(); ++k) {
+    const std::string_view line = rest.substr(0, rest.find(line_end_));
+    if (holds_cell(line, word)) return line_ + k;
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+  }
+  return 0;
+}
+
 void LogText::cut() {
   const char* const end = row_.data() + row_.size();
   std::size_t next = 0;  // of order_
@@ -229,6 +280,11 @@ void LogText::cut() {
     begin = next_cell(stop, end);
   }
   if (empty && cells_ == width_ + 1) --cells_;
+  for (; next < order_.size(); ++next) {
+    SelectedColumn& column = selected_[order_[next]];
+    column.text = {};
+    column.column = row_.size() + 1;
+  }
 }
 
 std::size_t LogText::select(std::size_t index) {

@@ -17,6 +17,8 @@ struct LogLayout {
   std::size_t header_line = 0;  // from 1: lines above it are left out; 0: none
   std::size_t skip_rows = 0;    // below the names, or at the start
   std::vector<std::string> comment_prefixes;  // lines that start so are none
+  std::string repeated_header;  // a line that starts so, and those down to the
+                                // next line of names, are left out
   char decimal = '.';  // mark of numbers; ',' is then not found as a delimiter
 };
 
@@ -37,6 +39,10 @@ class LogText {
   char delimiter() const { return layout_.delimiter; }  // ' ': blanks
   std::size_t skipped_rows() const { return layout_.skip_rows; }
 
+  /// Returns the number of the first line below that of the names that has the
+  /// cell `word`; 0 when none of the next hundred has.
+  std::size_t line_holding(std::string_view word) const;
+
   /// Selects the column `index` (from 0) for the rows to come. Returns the slot
   /// of its cells.
   std::size_t select(std::size_t index);
@@ -47,6 +53,7 @@ class LogText {
   std::size_t line() const { return line_; }    // of the row, from 1
   std::size_t cells() const { return cells_; }  // of the row
   bool is_whole() const { return cells_ == width_; }
+  bool is_short() const { return cells_ < width_; }
   std::string_view cell(std::size_t slot) const { return selected_[slot].text; }
   std::string_view row() const { return row_; }
   bool is_first_row() const { return line_ == first_row_; }
@@ -64,6 +71,8 @@ class LogText {
   };
 
   bool next_line();
+  bool is_repeated_header(std::string_view line) const;
+  void skip_repeated_header();
   void start();
   void read_names();
   void cut();
@@ -75,6 +84,7 @@ class LogText {
                             const std::string& message) const;
 
   std::string_view text_, rest_, row_;
+  std::string_view names_row_;
   std::string path_;
   LogLayout layout_;
   char line_end_ = '\n';

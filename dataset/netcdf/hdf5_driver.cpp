@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "dataset/netcdf/hdf5_driver.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -9,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "dataset/files/hdf5_signature.h"
 #include "dataset/netcdf/hdf5_bytes.h"
 #include "dataset/netcdf/hdf5_header.h"
 #include "dataset/netcdf/hdf5_heap.h"
@@ -223,6 +226,9 @@ constexpr const char* kName = "beamgyro";
 }  // namespace
 
 H5Id open_hdf5_file(OpenFile& file) {
+  if (const std::uint64_t whole = stated_hdf5_size(file); whole > file.size())
+    throw Hdf5Error(fmt::format(
+        "{} of {} bytes are there; expected a whole copy", file.size(), whole));
   return {H5Fopen(kName, H5F_ACC_RDONLY, properties_for(file)), H5Fclose,
           "open the file"};
 }

@@ -21,6 +21,20 @@
 namespace beamgyro::internal {
 namespace {
 
+bool is_variable_text(hid_t type) {
+  return H5Tget_class(type) == H5T_STRING &&
+         is_true(H5Tis_variable_str(type), "read a type");
+}
+
+[[noreturn]] void reject_variable_text(const std::string& what) {
+  throw Hdf5Error(fmt::format(
+      "{} is text of variable length, where damage can crash HDF5; expected "
+      "text of fixed length. h5netcdf, h5py and nccopy write the other: copy "
+      "with xarray's engine=\"netcdf4\", give h5py numpy.bytes_, or make a "
+      "recording as CSV",
+      what));
+}
+
 /// The text that `read` (H5Aread or H5Dread) fills, of one value of `type`, for
 /// which the file has `room` bytes.
 template <class Read>
@@ -29,11 +43,7 @@ std::string read_string(hid_t type, hid_t space, std::uint64_t room,
   if (H5Tget_class(type) != H5T_STRING ||
       H5Sget_simple_extent_npoints(space) != 1)
     throw Hdf5Error(what + " is no text");
-  if (is_true(H5Tis_variable_str(type), "read " + what))
-    throw Hdf5Error(fmt::format(
-        "{} is text of variable length, where damage can crash HDF5; expected "
-        "text of fixed length, which beamgyro writes since format_version 2",
-        what));
+  if (is_variable_text(type)) reject_variable_text(what);
   const std::size_t size = H5Tget_size(type);
   check_hdf5(size == 0 || size > room ? -1 : 0, "read " + what);
   std::string text(size, '\0');
@@ -108,6 +118,10 @@ H5Id open_variable(hid_t file, const std::string& name) {
   const hid_t opened = H5Dopen2(file, name.c_str(), H5P_DEFAULT);
   if (opened < 0 && take_met_global_heap()) reject_view(name);
   H5Id variable(opened, H5Dclose, "open " + name);
+  {  // nccopy gives such texts fill values, which no property can be read with
+    const H5Id type(H5Dget_type(variable), H5Tclose, "open " + name);
+    if (is_variable_text(type)) reject_variable_text("/" + name);
+  }
   check_storage(variable, name);
   return variable;
 }

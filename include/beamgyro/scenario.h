@@ -67,7 +67,8 @@ class Scenario : public Shared<internal::ScenarioState> {
   std::size_t samples() const;   ///< floor(duration output_rate)
   std::string fidelity() const;  ///< "quasistatic", "envelope" or "carrier"
   std::uint64_t seed() const;
-  /// Estimated processor time of a carrier run [s]; 0 for the other fidelities.
+  /// Estimated time of a carrier run here [s]; 0 for the other fidelities. For
+  /// one of a minute or more its first second is simulated.
   double estimated_seconds() const;
 
   using Shared::Shared;

@@ -64,7 +64,8 @@ void check_value(const Draw& draw, const ConfigNode& value,
   }
   reject(draw.place,
          fmt::format("{}: {} takes no such key{}", printable(key), name,
-                     near.empty() ? "; docs/reference/ lists its keys"
+                     near.empty() ? "; [tolerances] draws keys of the device, "
+                                    "`vary` of a [[run]] those of its scenario"
                                   : fmt::format("; did you mean '{}'?", near)));
 }
 

@@ -33,9 +33,10 @@ void simulate_carrier(const ScenarioPlan& scenario, const Gyro& gyro,
 
 inline constexpr double kCarrierTick = 1e-3;  // [s]
 
-/// Estimates the processor time [s] of simulate_carrier(), from the measured
-/// cost of a powered second (bench/README.md).
-double carrier_cost(const ScenarioPlan& scenario);
+/// Estimates the time [s] that simulate_carrier() takes here. A run of more
+/// than a minute on the machine of bench/README.md is estimated from its first
+/// second with power, which is simulated for it.
+double carrier_cost(const ScenarioPlan& scenario, const Gyro& gyro);
 
 /// Simulates a run at the fidelity of its scenario, block by block. Throws as
 /// simulate_quasistatic(), simulate_envelope() and simulate_carrier().

@@ -16,7 +16,21 @@ namespace beamgyro::internal {
 
 namespace {
 
+// A device that is named by a scenario or a campaign may be any file.
+void require_device(const ConfigDocument& document) {
+  const auto has = [&](const char* key) {
+    return document.value(key) != nullptr;
+  };
+  if (has("beam") || has("patches") || has("bond")) return;
+  const char* const is = has("duration_s")   ? "is a scenario"
+                         : has("tolerances") ? "is a campaign"
+                                             : "has no table [beam]";
+  throw std::invalid_argument(fmt::format("{}: {}; expected a device file",
+                                          document.path().string(), is));
+}
+
 LoadedDevice device_of(const ConfigDocument& document, const Overrides& set) {
+  require_device(document);
   LoadedDevice loaded{read_device(document), document.text()};
   document.reject_unknown_keys();
   set.check_all_used();

@@ -47,6 +47,15 @@ TEST(UnknownKey, SuggestsAnotherTableThatHasTheKey) {
             "'readout.offset_V'?");
 }
 
+TEST(UnknownKey, AnAxisOfAnotherTableIsNoSuggestion) {
+  const ConfigDocument document = ConfigDocument::parse(
+      "[acceleration]\nz = 1\n[cross_rate]\nx = 1\nz = 2\n", "unit.toml");
+  document.root().table("acceleration").number("z");
+  document.root().table("cross_rate").number("x");
+  EXPECT_EQ(rejection([&] { document.reject_unknown_keys(); }),
+            "unit.toml:5:1: cross_rate.z: unknown key; [cross_rate] takes x");
+}
+
 TEST(UnknownKey, ListsTheKeysOfTheTableWhenNothingIsNear) {
   EXPECT_EQ(rejection_of("[beam]\ncolour = 2.5"),
             "unit.toml:2:1: beam.colour: unknown key; [beam] takes length_m, "

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Recordings, models, compensators and campaigns that are refused."""
 
+import re
 import shutil
 
 import h5py
@@ -27,6 +28,10 @@ class Data(Rejections):
           for name in ["text.h5", "other.h5", "half.h5", "empty.h5", "gone.h5"]
           for words, rest in [("info", ""), ("allan", ""),
                               ("train", " --model cubic.toml -o o.json")]],
+        row("info half.h5", re.compile(r"half.h5: \d+ of \d+ bytes are there; expected a whole "
+                                       "copy"), name="cut off"),
+        row("info copy.h5", "filetype of the file is text of variable length",
+            'engine="netcdf4"', "CSV"),
         row("train log.csv --model cubic.toml -o o.json", "log.csv:1", "no column 'time'",
             "import", files={"log.csv": "t,w\n0,1\n"}),
         # Models
@@ -111,6 +116,10 @@ class Data(Rejections):
         whole = self.run_scenario("run", text=ramp()).read_bytes()
         self.write("half.h5", whole[:len(whole) // 2])
         self.write("less.h5", whole)
+        # As h5netcdf and h5py write texts.
+        self.write("copy.h5", whole)
+        with h5py.File(self.dir / "copy.h5", "a") as file:
+            file.attrs["filetype"] = file.attrs["filetype"].decode()
         with h5py.File(self.dir / "less.h5", "a") as file:
             del file["quadrature"]
         for name in BIG:
@@ -189,7 +198,8 @@ TAKES = [("run FILE -o o.h5", "scenario.toml"),
          ("export FILE --format c -o o", "c.json"),
          ("allan FILE", "run.h5 run.csv table.csv"),
          ("info FILE", "run.h5 run.csv set set/rest_00000.h5"),
-         ("verify FILE", "set")]
+         ("verify FILE", "set"),
+         ("validate c.json --device FILE --qualification q.toml", "device.toml")]
 
 
 class Kinds(Rejections, Set):

@@ -220,6 +220,12 @@ class Formats(ProgramTest):
                     text[f"{table}.unit"] = '"counts"'
                     text[f"{table}.scale_K"] = "1"
                 text.setdefault(f"{table}.unit", '"deg/s"')
+            if table == "temperature.thermistor":  # no linear keys beside it
+                text["temperature.unit"] = '"V"'
+                text[f"{table}.beta_K"] = "3950"
+                text[f"{table}.resistance_25_ohm"] = "1e4"
+                text[f"{table}.series_ohm"] = text[f"{table}.full_scale"] = "1e4"
+                text[f"{table}.side"] = '"ground"'
             text[key] = "{}"
             if joined:
                 text = {**{k: v for k, v in base.items() if "temp" not in k},

@@ -105,8 +105,9 @@ class Scenarios(Rejections):
                 "output_rate_Hz = 2", f"output_rate_Hz = {rate}")})
           for fidelity, rate, *says in [("envelope", "2001", "2000", PLACE),
                                         ("carrier", "2500", "quarter")]],
-        row(RUN, "9000 s", "--yes", name="hours of a carrier", files={
-            "s.toml": replaced("quasistatic", "carrier").replace("= 600", "= 9000")}),
+        # On the slowest and the fastest machine: the first second is timed.
+        row(RUN, "900000 s", "--yes", name="hours of a carrier", files={
+            "s.toml": replaced("quasistatic", "carrier").replace("= 600", "= 900000")}),
         # Temperatures that the materials do not stand
         *[override(f"{key}={value}", key, "[-100, 150]") for key, value in [
             ("ambient.constant_degC", 151), ("ambient.constant_degC", -101),

@@ -27,6 +27,7 @@ class Words(Rejections):
         row("run s.toml -output=a.h5 a.h5", '"-output"', 'did you mean "--output"?'),
         row("run s.toml -output a.h5", '"-output"', 'did you mean "--output"?'),
         row("run s.toml -o=a.h5", "expected -o a.h5"),
+        row("run s.toml -out a.h5", '"-out" is -o with the value "ut"; expected -o a.h5'),
         row(f"{RUN} -quiet", 'did you mean "--quiet"?'),
         # Missing
         row("run s.toml", "--output is missing; expected beamgyro run SCENARIO.toml -o RUN.h5"),

@@ -173,7 +173,7 @@ std::string text_of(const Limit& limit) {
     text = fmt::format("at most {:g}", *limit.most);
   else if (limit.least)
     text = fmt::format("at least {:g}", *limit.least);
-  if (limit.absolute) text += " without its sign";
+  if (limit.absolute) text += " in magnitude";
   if (limit.relative_to == "before")
     text += " times the recorded rate's";
   else if (!limit.relative_to.empty())

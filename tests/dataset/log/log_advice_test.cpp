@@ -73,6 +73,39 @@ unit = "deg/s"
             3u);
 }
 
+TEST(LogAdvice, AHeaderWithinTheLogIsLeftOutByItsFirstLine) {
+  const std::string log =
+      "LabVIEW\nt\tw\tT\tComment\n0\t1\t25\nChannels\t2\t\t\n***End***\t\t\t\n"
+      "t\tw\tT\tComment\n1\t2\t25\n";
+  expect_advice(refusal(kSeconds, log),
+                {"log.csv has no column \"t\"",
+                 "line 2 holds it: header_line = 2 in the map"});
+  const std::string second = "header_line = 2\n" + kSeconds;
+  expect_advice(refusal(second, log), {"log.csv:3:7: 3 cells; expected 4",
+                                       "rules.ragged = \"fill\""});
+  const std::string fill = "rules.ragged = \"fill\"\n" + second;
+  expect_advice(refusal(fill, log),
+                {"log.csv:4:1: 'Channels' is not a number",
+                 "repeated_header = \"Channels", "comment_prefixes"});
+  const ImportedLog whole =
+      imported("repeated_header = \"Channels\"\n" + fill, log);
+  EXPECT_EQ(column_values(whole.recording, "rate"), (Readings{1, 2}));
+  expect_advice(refusal("repeated_header = \"\"\n" + fill, log),
+                {"map.toml:1:19: repeated_header: \"\" begins every line"});
+  // A row with too many cells is ragged all the same.
+  expect_advice(
+      refusal("rules.ragged = \"fill\"\n" + kSeconds, "t,w,T\n0,1,25,3\n"),
+      {"log.csv:2:9: 4 cells; expected 3"});
+}
+
+TEST(LogAdvice, AnAxisIsXYOrZ) {
+  const std::string time = "[time]\ncolumn = \"t\"\nunit = \"s\"\n";
+  expect_advice(refusal(time + "[gyro.w]\ncolumn = \"w\"\n", "t,w,T\n0,1,25\n"),
+                {"gyro.column: missing, and 'w' is no axis", "[gyro.x]"});
+  expect_advice(refusal(time + "[gyro]\nunit = \"deg/s\"\n", "t,w,T\n0,1,25\n"),
+                {"gyro.column: missing; expected the name of the column"});
+}
+
 TEST(LogAdvice, AnExponentOfFortranIsNoDate) {
   const std::string message = refusal(kSeconds, "t,w,T\n0,1.5D-03,25\n");
   expect_advice(message, {"log.csv:2:3: '1.5D-03' is not a number",
@@ -116,6 +149,7 @@ TEST(LogAdvice, ALogThatIsNotUtf8) {
   expect_advice(refusal(map, log),
                 {"map.toml:5:10: gyro.column: log.csv has no column",
                  "is not UTF-8", "number"});
+  expect_no_advice(refusal(map, log), "did you mean");
   expect_no_advice(refusal(map, "t;w [°/h]\n0;1\n"), "UTF-8");
   EXPECT_EQ(
       imported("[time]\ncolumn = \"t\"\nunit = \"s\"\n[gyro]\ncolumn = 2\n"

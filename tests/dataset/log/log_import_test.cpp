@@ -166,7 +166,8 @@ TEST(LogImport, RaggedRowsAreAnErrorUnlessDropped) {
   const std::string rows = "t,w,T\n0,1,25\n10,2\n20,3,25,7\n30,4,25\n";
   EXPECT_EQ(rejection_of(rows),
             "log.csv:3:5: 2 cells; expected 3 as in the first line (or "
-            "rules.ragged = \"drop\" in the map)");
+            "rules.ragged = \"fill\", which reads the cells that lack as "
+            "empty, or \"drop\", in the map)");
   const ImportedLog log = log_of(rows, kMap + "[rules]\nragged = \"drop\"\n");
   EXPECT_EQ(column(log, "rate"), (Values{1, 4}));
   expect_dropped(log, DropReason::kRagged, 2, 3);

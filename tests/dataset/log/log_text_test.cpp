@@ -77,6 +77,38 @@ TEST(LogText, TellsRowsOfAnotherWidth) {
   EXPECT_FALSE(log.next());
 }
 
+TEST(LogText, CellsThatARowLacksAtItsEndAreEmpty) {
+  LogText log("a,b,c\n1,2,3\n4,5\n", "log.csv", {});
+  const std::size_t c = log.select(2);
+  ASSERT_TRUE(log.next());
+  EXPECT_FALSE(log.is_short());
+  ASSERT_TRUE(log.next());
+  EXPECT_TRUE(log.is_short());
+  EXPECT_EQ(log.cell(c), "");
+  EXPECT_EQ(rejection([&] { log.fail(c, "no"); }), "log.csv:3:4: no");
+}
+
+TEST(LogText, LeavesOutHeadersThatAreRepeated) {
+  const LogLayout layout{.header_line = 3, .repeated_header = "Channels"};
+  LogText log(
+      "Channels\t2\n\n t\tw\r\n0\t1\nChannels\t2\n\"\nt\tw\n2\t3\nChannels\n"
+      "t\tw \n4\t5",
+      "log.lvm", layout);
+  const std::size_t w = log.select(1);
+  std::string found;
+  while (log.next()) found += std::string(log.cell(w)) + ";";
+  EXPECT_EQ(found, "1;3;5;");
+  log.return_to(8);
+  EXPECT_EQ(log.cell(w), "3");
+
+  LogText cut("t,w\n0,1\nChannels\n1,2\n", "log.csv",
+              {.repeated_header = "Channels"});
+  ASSERT_TRUE(cut.next());
+  EXPECT_EQ(rejection([&] { cut.next(); }),
+            "log.csv:3:1: a header that no line of names ends; expected the "
+            "line 't,w' below it, or another repeated_header in the map");
+}
+
 TEST(LogText, GoesBackToARow) {
   LogText log("a,b\n1,2\n\n3,44\n5,6\n", "log.csv", {});
   const std::size_t b = log.select(1);

@@ -156,6 +156,26 @@ TEST_F(HostileHdf5, AMetaTextOfVariableLengthAsOfVersion1IsNotRead) {
       rejected().starts_with("/meta/device is text of variable length"));
 }
 
+/// nccopy gives them fill values, which are such texts, too.
+TEST_F(HostileHdf5, AMetaTextOfVariableLengthWithAFillValueIsNotRead) {
+  change([](hid_t id) {
+    H5Ldelete(id, "meta/device", H5P_DEFAULT);
+    const H5Id type = text_of_variable_length();
+    const H5Id properties = property_list(H5P_DATASET_CREATE);
+    const char* nothing = "";
+    H5Pset_fill_value(properties, type, &nothing);
+    const H5Id text(H5Dcreate2(id, "meta/device", type, scalar_space(),
+                               H5P_DEFAULT, properties, H5P_DEFAULT),
+                    H5Dclose, "make text");
+    const char* value = "text";
+    H5Dwrite(text, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value);
+  });
+  const std::string message = rejected();
+  EXPECT_TRUE(holds(message, "/meta/device is text of variable length"));
+  EXPECT_TRUE(holds(message, "nccopy"));
+  EXPECT_TRUE(holds(message, "engine=\"netcdf4\""));
+}
+
 std::size_t pass(unsigned, std::size_t, const unsigned[], std::size_t bytes,
                  std::size_t*, void**) {
   return bytes;
