@@ -194,8 +194,11 @@ void ValidationRequest::require_baselines() const {
   if (!qualification.training.empty()) return;
   for (const Limit& limit : specification.limits) {
     if (limit.relative_to.empty() || limit.relative_to == "before") continue;
-    if (!options.device && source.trained && limit.relative_to != "spline")
-      continue;
+    const bool is_in_file =
+        limit.relative_to != "spline" &&
+        (limit.relative_to != "straight_lines" ||
+         (source.trained && source.trained->straight_lines));
+    if (!options.device && source.trained && is_in_file) continue;
     throw std::invalid_argument(fmt::format(
         "{}: the limit of {} is relative to the {}, which is trained on the "
         "[[training]] runs of a qualification; there are none",

@@ -57,6 +57,17 @@ void print_groups(const CrossValidated& cv, std::string& text) {
                    cv.by, k + 1, cv.group_rms[k], cv.constant_group_rms[k]);
 }
 
+// Straight lines, or that the rows have none.
+std::string lines_text(const FittedCompensator& compensator) {
+  if (!compensator.straight_lines)
+    return "straight lines between soaks: none, the rows hold no two soaks\n";
+  const Provenance& source = compensator.provenance;
+  return fmt::format(
+      "straight lines between {} soaks: rms in-sample {}, held-out {} deg/s\n",
+      compensator.straight_lines->temperatures.size(),
+      shown(source.lines_in_sample_rms), shown(source.lines_held_out_rms));
+}
+
 }  // namespace
 
 std::string training_report(const TrainResult& result, bool every_group) {
@@ -83,6 +94,7 @@ std::string training_report(const TrainResult& result, bool every_group) {
   fmt::format_to(out, "cubic: rms in-sample {:.6f}, held-out {} deg/s\n",
                  source.baseline_in_sample_rms,
                  shown(source.baseline_held_out_rms));
+  text += lines_text(result.compensator);
   fmt::format_to(out, "constant: rms in-sample {:.6f}, held-out {} deg/s\n",
                  source.constant_in_sample_rms,
                  shown(source.constant_held_out_rms));

@@ -50,6 +50,10 @@ std::vector<std::string> baseline_names(const ValidationResult& result) {
   return names;
 }
 
+std::size_t column_width(const std::string& name) {
+  return std::max(name.size() + 2, std::size_t{10});
+}
+
 // Whether a metric stands in the short table.
 bool decides(const ValidationResult& result, const MetricResult& metric) {
   if (metric.metric->name == "residual_rms_deg_per_s") return true;
@@ -66,7 +70,8 @@ std::string metric_table(const ValidationResult& result, bool all) {
       width = std::max(width, metric.metric->name.size());
   std::string text =
       fmt::format("{:<{}}{:>10}{:>10}", "metric", width, "before", "after");
-  for (const std::string& name : names) text += fmt::format("{:>10}", name);
+  for (const std::string& name : names)
+    text += fmt::format("{:>{}}", name, column_width(name));
   text += '\n';
   for (const MetricResult& metric : result.metrics) {
     if (!metric.before && !metric.after) continue;
@@ -75,7 +80,8 @@ std::string metric_table(const ValidationResult& result, bool all) {
                         figure(metric.before), figure(metric.after));
     for (const BaselineEstimate& baseline : metric.baselines)
       if (baseline.name != "none")
-        text += fmt::format("{:>10}", figure(baseline.estimate));
+        text += fmt::format("{:>{}}", figure(baseline.estimate),
+                            column_width(baseline.name));
     text += '\n';
   }
   return text;

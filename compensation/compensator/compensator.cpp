@@ -90,6 +90,13 @@ std::vector<double> baseline_rate(const FittedCompensator& compensator,
                         compensator.temperature_range, recording);
 }
 
+std::vector<double> straight_lines_rate(const FittedCompensator& compensator,
+                                        const Recording& recording) {
+  return corrected_rate({{Scale{}}, {}, compensator.straight_lines.value()},
+                        {parse_input("temperature")},
+                        compensator.temperature_range, recording);
+}
+
 std::size_t clamped_samples(const FittedCompensator& compensator,
                             const Recording& recording) {
   const std::vector<double>& temperature =
@@ -114,6 +121,7 @@ std::string settled_curve(const FittedCompensator& compensator) {
       {"bias_deg_per_s", nullptr},
       {"cubic_deg_per_s",
        bias_over(compensator.baseline, {parse_input("temperature")}, clamped)},
+      {"straight_lines_deg_per_s", nullptr},
       {"sigma_deg_per_s", nullptr},
       {"other_inputs", nlohmann::ordered_json::array()}};
   for (const Input& input : compensator.inputs)
@@ -122,6 +130,10 @@ std::string settled_curve(const FittedCompensator& compensator) {
   if (curve["other_inputs"].empty())
     curve["bias_deg_per_s"] =
         bias_over(compensator.bias, compensator.inputs, clamped);
+  if (compensator.straight_lines) {
+    const Eigen::ArrayXd lines = compensator.straight_lines->predict(clamped);
+    curve["straight_lines_deg_per_s"] = std::span(lines.data(), kPoints);
+  }
   if (compensator.sigma)
     for (const double T : temperature)
       curve["sigma_deg_per_s"].push_back(compensator.sigma->at(T, 0.0, 0.0));

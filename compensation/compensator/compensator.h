@@ -61,6 +61,8 @@ struct Provenance {
   std::optional<double> held_out_rms;   // [deg/s], over the held-out rows
   double baseline_in_sample_rms = 0.0;  // [deg/s]
   std::optional<double> baseline_held_out_rms;  // [deg/s]
+  // [deg/s], of the straight lines; nothing without them
+  std::optional<double> lines_in_sample_rms, lines_held_out_rms;
   std::optional<double> constant_bias;  // [deg/s], mean of the training rows
   double constant_in_sample_rms = 0.0;  // [deg/s], of that constant
   std::optional<double> constant_held_out_rms;  // [deg/s]
@@ -75,6 +77,9 @@ struct FittedCompensator {
   BiasModel bias;                           // of `inputs`
   std::optional<LookupTable> scale_factor;  // s(T) [-]; 1 without
   BiasModel baseline;  // of the temperature: the cubic of equation (1)
+  // Beside it, of the same rows: fit_straight_lines(). Files of older programs
+  // have none.
+  std::optional<LookupTable> straight_lines = {};
   TemperatureRange temperature_range;  // [degC], seen in training
   // The population that was learned, from which devices are adapted. The bias
   // is its mean then.
@@ -103,6 +108,10 @@ std::vector<double> compensated_rate_sigma(const FittedCompensator& compensator,
 /// of equation (1), with s = 1.
 std::vector<double> baseline_rate(const FittedCompensator& compensator,
                                   const Recording& recording);
+
+/// Returns that of its straight lines. The compensator must have them.
+std::vector<double> straight_lines_rate(const FittedCompensator& compensator,
+                                        const Recording& recording);
 
 /// Returns the number of powered samples whose measured temperature was clamped
 /// because it lies outside the range of the compensator.

@@ -119,6 +119,9 @@ Json json_of(const Provenance& p) {
       {"baseline_in_sample_rms_deg_per_s",
        finite_json(p.baseline_in_sample_rms)},
       {"baseline_held_out_rms_deg_per_s", json_of(p.baseline_held_out_rms)},
+      {"straight_lines_in_sample_rms_deg_per_s",
+       json_of(p.lines_in_sample_rms)},
+      {"straight_lines_held_out_rms_deg_per_s", json_of(p.lines_held_out_rms)},
       {"constant_bias_deg_per_s", json_of(p.constant_bias)},
       {"constant_in_sample_rms_deg_per_s",
        finite_json(p.constant_in_sample_rms)},
@@ -157,7 +160,14 @@ Provenance read_provenance(const JsonNode& node) {
       node.at("baseline_in_sample_rms_deg_per_s").number();
   p.baseline_held_out_rms =
       node.at("baseline_held_out_rms_deg_per_s").optional_number();
-  if (node.has("constant_bias_deg_per_s"))  // not in older files
+  // Not in older files.
+  if (node.has("straight_lines_in_sample_rms_deg_per_s"))
+    p.lines_in_sample_rms =
+        node.at("straight_lines_in_sample_rms_deg_per_s").optional_number();
+  if (node.has("straight_lines_held_out_rms_deg_per_s"))
+    p.lines_held_out_rms =
+        node.at("straight_lines_held_out_rms_deg_per_s").optional_number();
+  if (node.has("constant_bias_deg_per_s"))
     p.constant_bias = node.at("constant_bias_deg_per_s").optional_number();
   p.constant_in_sample_rms =
       node.at("constant_in_sample_rms_deg_per_s").number();
@@ -224,6 +234,8 @@ FittedCompensator read_root(const JsonNode& root) {
   }
   c.temperature_range = read_range(root.at("temperature_range_degC"));
   c.baseline = read_bias_model(root.at("baseline"), "polynomial", 1);
+  if (root.has("straight_lines"))
+    c.straight_lines = LookupTable::read(root.at("straight_lines"), 1);
   if (root.has("population"))
     c.population = read_population(root.at("population"));
   if (root.has("sigma"))
@@ -255,6 +267,7 @@ std::string compensator_text(const FittedCompensator& compensator) {
                                     finite_json(c.temperature_range.highest)};
   json["baseline"]["kind"] = kind_name(c.baseline);
   put_bias_model(c.baseline, json["baseline"]);
+  if (c.straight_lines) json["straight_lines"] = c.straight_lines->parameters();
   if (c.population) json["population"] = population_json(*c.population);
   if (c.sigma) json["sigma"] = bias_sigma_json(*c.sigma);
   if (!c.sigma_not_known.empty()) json["sigma_not_known"] = c.sigma_not_known;

@@ -11,6 +11,7 @@
 
 #include "compensation/compensator/run_comparison.h"
 #include "compensation/methods/bias_model.h"
+#include "compensation/methods/straight_lines.h"
 #include "compensation/scoring/scale_factor.h"
 #include "compensation/training/cautions.h"
 #include "compensation/training/selection.h"
@@ -131,21 +132,22 @@ void leave_out_channels(const FitSpec& kind, FittedCompensator& c) {
   c.bias.input_scales.resize(1);
 }
 
-// Rms residuals of the model, the cubic and a constant.
-void write_scores(const BiasModel& model, const BiasModel& baseline,
-                  const TrainingRows& rows, const TrainingRows& held_out,
-                  Provenance& p) {
-  const auto cubic = [&](const TrainingRows& any) {
+// Rms residuals of the model, the cubic, straight lines and a constant.
+void write_scores(const FittedCompensator& c, const TrainingRows& rows,
+                  const TrainingRows& held_out, Provenance& p) {
+  const auto rms = [](const auto& curve, const TrainingRows& any) {
     return std::sqrt(
-        (any.bias - baseline.predict(any.temperature)).square().mean());
+        (any.bias - curve.predict(any.temperature)).square().mean());
   };
-  p.in_sample_rms = rms_residual(model, rows);
-  p.baseline_in_sample_rms = cubic(rows);
+  p.in_sample_rms = rms_residual(c.bias, rows);
+  p.baseline_in_sample_rms = rms(c.baseline, rows);
+  if (c.straight_lines) p.lines_in_sample_rms = rms(*c.straight_lines, rows);
   p.constant_bias = rows.bias.mean();
   p.constant_in_sample_rms = rms_about(rows.bias.mean(), rows.bias);
   if (held_out.size() == 0) return;
-  p.held_out_rms = rms_residual(model, held_out);
-  p.baseline_held_out_rms = cubic(held_out);
+  p.held_out_rms = rms_residual(c.bias, held_out);
+  p.baseline_held_out_rms = rms(c.baseline, held_out);
+  if (c.straight_lines) p.lines_held_out_rms = rms(*c.straight_lines, held_out);
   p.constant_held_out_rms = rms_about(rows.bias.mean(), held_out.bias);
 }
 
@@ -297,6 +299,7 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
   c.population = std::move(selected.fit.population);
   c.temperature_range = c.population ? c.population->range() : rows.range;
   c.baseline = fit_baseline(rows);
+  c.straight_lines = fit_straight_lines(rows);
   result.restarts = std::move(selected.fit.restarts);
   result.chosen = selected.fit.chosen;
 
@@ -315,7 +318,7 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
   p.choices = std::move(selected.fit.choices);
   const TrainingRows own = with_columns(rows, spec.inputs, c.inputs);
   const TrainingRows own_unseen = with_columns(unseen, spec.inputs, c.inputs);
-  write_scores(c.bias, c.baseline, own, own_unseen, p);
+  write_scores(c, own, own_unseen, p);
   if (selected.weight == 1.0) {
     const std::vector<Input>& inputs = selected.candidate.inputs;
     const TrainingRows fitted = with_columns(rows, spec.inputs, inputs);

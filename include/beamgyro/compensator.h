@@ -100,6 +100,8 @@ class Compensator final : public RateCompensator,
   ///     bias_deg_per_s     taken away, at the clamped temperature; null where
   ///                        it follows more than the temperature
   ///     cubic_deg_per_s    the same of the cubic of its training
+  ///     straight_lines_deg_per_s
+  ///                        of the lines between its soaks, or null
   ///     sigma_deg_per_s    stated 1-sigma; null where it states none
   ///
   /// `other_inputs` names the inputs that the temperature does not tell.

@@ -13,6 +13,7 @@ COLORS = {"pass": "#0072b2", "fail": "#d55e00"}
 GREY = "#6a6a6a"
 BASELINES = {"before": "no compensator", "constant": "a constant",
              "cubic": "a cubic", "table": "a table of straight lines",
+             "straight_lines": "straight lines between soaks",
              "constant_of_runs": "a constant of each run"}
 
 

@@ -102,17 +102,19 @@ std::vector<BaselineMethod> trained_baselines(const TrainingData& data,
                                               std::size_t threads) {
   if (data.training.empty()) return {};
   std::vector<BaselineMethod> trained(std::size(kBaselineModels));
+  std::optional<FittedCompensator> cubic;
   for_each_task(trained.size(), threads, [&](std::size_t k, std::size_t) {
     const std::string name(kBaselineModels[k].name);
     const ConfigDocument document =
         ConfigDocument::parse(kBaselineModels[k].model, name);
     try {
-      trained[k] = {
-          name,
-          [one = trained_on(data, read_model(document))](const Recording& run) {
-            return compensated_rate(one, run);
-          },
-          kBaselineModels[k].has_metrics};
+      FittedCompensator fitted = trained_on(data, read_model(document));
+      if (name == "cubic") cubic = fitted;
+      trained[k] = {name,
+                    [one = std::move(fitted)](const Recording& run) {
+                      return compensated_rate(one, run);
+                    },
+                    kBaselineModels[k].has_metrics};
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(fmt::format(
           "the baseline {} cannot be trained on the [[training]] runs of the "
@@ -120,6 +122,11 @@ std::vector<BaselineMethod> trained_baselines(const TrainingData& data,
           name, error.what()));
     }
   });
+  if (cubic && cubic->straight_lines)
+    trained.push_back(
+        {"straight_lines", [lines = std::move(*cubic)](const Recording& run) {
+           return straight_lines_rate(lines, run);
+         }});
   return trained;
 }
 

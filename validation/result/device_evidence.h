@@ -17,7 +17,8 @@ namespace beamgyro::internal {
 
 /// A method that a compensator is compared with, trained on the same runs.
 struct Baseline {
-  std::string name;  // "none", "constant", "cubic", "spline", "table"
+  // "none", "constant", "cubic", "spline", "table", "straight_lines"
+  std::string name;
   Evidence evidence;
   bool has_metrics = true;  // or only a place among the comparisons
 };
@@ -92,8 +93,9 @@ void answer_again(DeviceEvidence& found, const TestedCompensator& compensator,
                   bool reports_clamped, std::size_t threads);
 
 /// Simulates the runs of a qualification and answers them. The baselines
-/// "constant", "cubic", "spline" and "table" are trained on `data`; without
-/// training runs there are none of them.
+/// "constant", "cubic", "spline", "table" and "straight_lines" are trained on
+/// `data`; without training runs there are none of them, and without two soaks
+/// among these no straight lines.
 DeviceEvidence device_evidence(const Qualification& qualification,
                                const QualifiedDevice& device,
                                const TestedCompensator& compensator,

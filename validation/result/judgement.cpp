@@ -20,6 +20,7 @@ namespace beamgyro::internal {
 namespace {
 
 constexpr const char* kConstantOfRuns = "constant_of_runs";
+constexpr const char* kStraightLines = "straight_lines";
 
 // Evaluates a metric on the runs that the qualification names for it. A metric
 // without names takes those of its purposes itself.
@@ -45,6 +46,8 @@ std::string words_of_other(const ResidualComparison& comparison) {
   if (comparison.with == kConstantOfRuns)
     return "a constant fitted to these runs";
   if (comparison.with == "table") return "a table with straight lines";
+  if (comparison.with == kStraightLines)
+    return "straight lines between the soaks of the same data";
   return fmt::format("a {} trained on the same data", comparison.with);
 }
 
@@ -120,11 +123,19 @@ Reasons reasons_of(const SpecificationFile& specification,
 
 // Which simple methods are as good: a reader has to know that first.
 std::string as_good_words(const std::vector<ResidualComparison>& comparisons) {
+  // Where there are soaks, the table of bins says the same twice.
+  const bool has_lines = std::ranges::any_of(
+      comparisons, [](const ResidualComparison& comparison) {
+        return comparison.with == kStraightLines;
+      });
   std::vector<std::string> words;
-  for (const ResidualComparison& comparison : comparisons)
-    if ((comparison.with == "cubic" || comparison.with == "table") &&
-        !comparison.is_same && !comparison.found.is_better())
+  for (const ResidualComparison& comparison : comparisons) {
+    const bool is_simple = comparison.with == "cubic" ||
+                           comparison.with == kStraightLines ||
+                           (comparison.with == "table" && !has_lines);
+    if (is_simple && !comparison.is_same && !comparison.found.is_better())
       words.push_back(rms_words(comparison));
+  }
   if (words.empty()) return "";
   return fmt::format("No better than a simple method: {}. ",
                      fmt::join(words, "; "));

@@ -57,6 +57,11 @@ DeviceEvidence evidence_of(std::vector<ReadRun> read,
         {"cubic", [known = by.known](const Recording& run) {
            return baseline_rate(*known, run);
          }});
+    if (by.known->straight_lines)
+      answering.baselines.push_back(
+          {"straight_lines", [known = by.known](const Recording& run) {
+             return straight_lines_rate(*known, run);
+           }});
   }
   return answered_evidence(std::move(read), std::move(recordings), answering,
                            threads);

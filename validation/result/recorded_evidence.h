@@ -18,9 +18,10 @@ namespace beamgyro::internal {
 /// Who answers recordings, and how.
 struct RecordedAnswering {
   const TestedCompensator& compensator;
-  // What is known of it, null for a library or a command. The baseline "cubic"
-  // is the one in its file, "constant" the mean of that over the temperatures
-  // that training saw.
+  // What is known of it, null for a library or a command. The baselines "cubic"
+  // and "straight_lines" are those in its file; there are no straight lines
+  // where its training held no two soaks. "constant" is the mean of the cubic
+  // over the temperatures that training saw.
   const FittedCompensator* known = nullptr;
   // [deg/s]; without, that of the first recording which tells it, or kFullScale
   std::optional<double> full_scale = {};

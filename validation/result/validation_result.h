@@ -22,7 +22,7 @@ namespace beamgyro::internal {
 
 /// The value of a metric that a baseline leaves.
 struct BaselineEstimate {
-  std::string name;  // "none", "constant", "cubic", "spline"
+  std::string name;  // "none", "constant", "cubic", "spline", "straight_lines"
   std::optional<Estimate> estimate;
 };
 

@@ -16,8 +16,9 @@ struct Limit {
   std::optional<double> least = {};  // smallest value allowed
   std::optional<double> most = {};   // largest value allowed
   bool absolute = false;             // of the value without its sign
-  // Empty, or "before" (the recorded rate), "constant", "cubic" or "spline" (a
-  // baseline): the limit is then of |metric| divided by |metric| of that one.
+  // Empty, or "before" (the recorded rate), "constant", "cubic", "spline" or
+  // "straight_lines" (a baseline): the limit is then of |metric| divided by
+  // |metric| of that one.
   std::string relative_to = {};
   std::string source = {};  // where the number comes from
   std::string place = {};   // file:line:column

@@ -111,7 +111,8 @@ SpecificationFile specification_of(const ConfigDocument& document) {
                                           {0.0, 0.5, true, false});
   add_limits(root.table_or_empty("limits"), "", file.limits);
   const ConfigTable relative = root.table_or_empty("limits_relative_to");
-  for (const char* reference : {"before", "constant", "cubic", "spline"})
+  for (const char* reference :
+       {"before", "constant", "cubic", "spline", "straight_lines"})
     add_limits(relative.table_or_empty(reference), reference, file.limits);
   file.better_than = better_than(root);
   file.may_leave_untested =

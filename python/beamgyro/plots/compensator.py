@@ -18,6 +18,7 @@ from .units import unit_of
 
 SCORES = [("constant", "constant", style.GREY),
           ("cubic", "baseline", style.YELLOW),
+          ("straight lines", "straight_lines", style.GREEN),
           ("compensator", "", style.AFTER)]
 SAMPLES = [("in-sample", "in_sample_rms_deg_per_s"),
            ("held out", "held_out_rms_deg_per_s")]
@@ -97,6 +98,10 @@ def _one(figure: Figure, one: Document) -> None:
     rows[0].plot(T, curve["cubic_deg_per_s"], color=style.YELLOW,
                  ls=(0, (4, 2)), label="cubic of the same training", lw=2.2,
                  zorder=2.5)
+    if curve.get("straight_lines_deg_per_s") is not None:
+        rows[0].plot(T, curve["straight_lines_deg_per_s"], color=style.GREEN,
+                     ls=(0, (1, 1)), label="straight lines between its soaks",
+                     lw=1.8, zorder=2.6)
     rows[0].set(ylabel="bias [°/s]", xlim=(T[0], T[-1]))
     words = "shaded: beyond the training, where the temperature is clamped"
     if not drawn:
@@ -122,22 +127,26 @@ def _one(figure: Figure, one: Document) -> None:
 
 
 def _scores(axes: Axes, one: Document) -> None:
-    """The residuals that training found, beside those of two baselines."""
+    """The residuals that training found, beside those of the baselines."""
     training = one["training"]
     shown = [(words, key) for words, key in SAMPLES
              if training.get(key) is not None]
     validated = training.get("cross_validation")
-    for k, (words, prefix, color) in enumerate(SCORES):
+    scores = [score for score in SCORES if score[1] != "straight_lines" or
+              training.get("straight_lines_in_sample_rms_deg_per_s")
+              is not None]
+    height = 0.78 / len(scores)
+    for k, (words, prefix, color) in enumerate(scores):
         values = [training.get(f"{prefix}_{key}" if prefix else key)
                   for _, key in shown]
         if validated:
             values.append({"constant": validated.get("constant_rms_deg_per_s"),
-                           "baseline": None,
-                           "": validated.get("rms_deg_per_s")}[prefix])
-        places = [j + 0.26 * (k - 1) for j in range(len(values))]
+                           "": validated.get("rms_deg_per_s")}.get(prefix))
+        places = [j + height * (k - (len(scores) - 1) / 2)
+                  for j in range(len(values))]
         drawn = [(p, v) for p, v in zip(places, values) if v is not None]
         for number, (place, value) in enumerate(drawn):
-            axes.barh(place, value, 0.24, color=color,
+            axes.barh(place, value, 0.92 * height, color=color,
                       label=None if number else words)
             axes.annotate(f"{value:.3g}", (value, place), xytext=(4, 0),
                           textcoords="offset points", va="center", fontsize=8)

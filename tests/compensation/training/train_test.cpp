@@ -117,6 +117,32 @@ TEST(Train, CubicIsItsOwnBaseline) {
   EXPECT_NEAR(result.summary().in_sample_rms, 0.39, 0.06);
 }
 
+TEST(Train, StraightLinesAreABaselineWhereThereAreSoaks) {
+  // Of 10 min, 15 K apart.
+  RecordedRun run{.duration = 600.0 * 7, .step = 1.0};
+  run.temperature = [](double t) { return -40.0 + 15.0 * std::floor(t / 600); };
+  run.bias = [T = run.temperature](double t) { return bias_curve(T(t)); };
+  const Recording unseen = soaks(-38.0, 48.0, 2.0);
+  const FittedCompensator c =
+      train(curve_spec(SplineSpec{15.0}), runs({run.recording()}, "few"),
+            runs({unseen}, "unseen"), 1)
+          .compensator;
+  ASSERT_TRUE(c.straight_lines.has_value());
+  EXPECT_EQ(c.straight_lines->temperatures.size(), 7);
+  EXPECT_LT(*c.provenance.lines_in_sample_rms, 1e-9);
+  EXPECT_NEAR(*c.provenance.lines_held_out_rms,
+              rms(straight_lines_rate(c, unseen)), 1e-9);
+  const FittedCompensator back =
+      parse_compensator(compensator_text(c), "few.json");
+  EXPECT_EQ(straight_lines_rate(back, unseen), straight_lines_rate(c, unseen));
+  EXPECT_EQ(back.provenance, c.provenance);
+  // Soaks of 2 min are none.
+  const FittedCompensator short_ones =
+      train(curve_spec(SplineSpec{}), kSoaks, {}, 1).compensator;
+  EXPECT_FALSE(short_ones.straight_lines.has_value());
+  EXPECT_FALSE(short_ones.provenance.lines_in_sample_rms.has_value());
+}
+
 TEST(Train, SummaryAndProvenanceSayWhatHappened) {
   const TrainResult result =
       train(network_spec({"temperature"}, 6), kSoaks, kOffGrid, 42);
