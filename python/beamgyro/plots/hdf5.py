@@ -54,11 +54,32 @@ class File:
         return values
 
 
+def _reject_driver_information(path: pathlib.Path) -> None:
+    """HDF5 takes the memory that such a block claims, up to 4 GiB."""
+    undefined = b"\xff" * 8
+    with path.open("rb") as file:
+        # Where HDF5 looks for its first bytes.
+        place, size = 0, path.stat().st_size
+        while place < size:
+            file.seek(place)
+            head = file.read(60)
+            if head.startswith(b"\x89HDF\r\n\x1a\n"):
+                begin = {b"\0": 48, b"\1": 52}.get(head[8:9])
+                if begin and head[begin:begin + 8] != undefined:
+                    raise PlotError(
+                        f"{path}: has a block of driver information, which no "
+                        "file of beamgyro has; expected a whole file as "
+                        "beamgyro wrote it")
+                return
+            place = max(512, 2 * place)
+
+
 @contextmanager
 def opened(path: pathlib.Path) -> Iterator[File]:
     """Raises PlotError where HDF5 fails, at opening or at reading."""
     import h5py
     try:
+        _reject_driver_information(path)
         with h5py.File(path) as file:
             yield File(path, file)
     except (OSError, RuntimeError) as error:
