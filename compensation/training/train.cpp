@@ -251,7 +251,6 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
     unseen = training_rows(noting(held_out, unseen_facts), spec.inputs,
                            spec.rows, rows.range, scale_factor);
   require_different_runs(facts.runs, unseen_facts.runs);
-  require_bias(rows);
   require_filters(spec.inputs, facts);
   result.rows = rows.size();
   result.held_out_rows = unseen.size();
@@ -269,6 +268,9 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
                                   cause_of_few_rows(rows, spec.rows));
     }
   }();
+
+  // After what an input tells more of: one that never varies, say.
+  require_bias(rows);
 
   c.inputs = selected.candidate.inputs;
   c.bias = std::move(selected.fit.model);
