@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -165,6 +166,18 @@ SensitivityResult studied(const Campaign& campaign,
     result.figures.push_back(figure_of(found.back()));
   }
   result.json = json_text(to_json(sample, head, found));
+  const auto warn = [&](std::uint64_t count, const char* what) {
+    if (count > 0)
+      result.warnings.push_back(fmt::format("{}: {} of {} devices {}",
+                                            campaign.name(), count,
+                                            counts.devices.load(), what));
+  };
+  warn(counts.limited,
+       "need more than drive.voltage_limit_V at some temperature; their loops "
+       "do not lock there");
+  warn(counts.saturated,
+       "drift beyond readout.full_scale_deg_per_s at some temperature; their "
+       "output saturates there");
   return result;
 }
 

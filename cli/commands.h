@@ -12,6 +12,7 @@ constexpr const char* kFiles = "Recordings and sets";
 
 /// Each function adds one command with its options.
 void add_characterise(CommandLine& program);
+void add_device(CommandLine& program);
 void add_run(CommandLine& program);
 void add_generate(CommandLine& program);
 void add_sensitivity(CommandLine& program);

@@ -80,8 +80,8 @@ void require_compensators(const ExportArguments& arguments) {
   for (const fs::path& file : arguments.inputs)
     if (is_of_kind(file, FileKind::kDevice))
       throw std::invalid_argument(fmt::format(
-          "{}: is a device file; the format {} is of compensators, those of "
-          "devices are {} and {}",
+          "{}: is a device file; the format {} is of compensators; beamgyro "
+          "characterise and the formats {} and {} are for a device file",
           file.string(), arguments.format, kSitl, kSdf));
 }
 

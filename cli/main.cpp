@@ -117,6 +117,7 @@ int run_program(const std::vector<std::string>& words) {
       "scores compensators on them.",
       version_text());
   add_characterise(program);
+  add_device(program);
   add_run(program);
   add_generate(program);
   add_sensitivity(program);

@@ -96,6 +96,7 @@ int sensitivity(const SensitivityArguments& arguments) {
   require_places(arguments, campaign);
   const SensitivityResult result = run_with_progress(campaign, options);
   print_result(result.text);
+  for (const std::string& warning : result.warnings) print_warning(warning);
   if (!arguments.json.empty()) write_text_file(arguments.json, result.json);
   if (!arguments.pictures.empty()) {
     const MadeDirectories made(arguments.pictures);

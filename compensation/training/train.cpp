@@ -14,6 +14,7 @@
 #include "compensation/methods/straight_lines.h"
 #include "compensation/scoring/scale_factor.h"
 #include "compensation/training/cautions.h"
+#include "compensation/training/run_facts.h"
 #include "compensation/training/selection.h"
 #include "compensation/training/sigma_fit.h"
 #include "config/option_message.h"
@@ -38,30 +39,6 @@ void check_runs(const ModelSpec& spec, const RunSource& runs,
         "{}",
         NamedOption{"held_out", "RUN.h5"},
         NamedOption{"cross_validation", "run|cycle|leg"});
-}
-
-// Facts about the runs that are kept besides their rows.
-struct RunFacts {
-  std::vector<RunMark> runs;
-  double coarsest_resolution = 0.0;  // [K], of the temperature
-  bool may_remember = false;         // a device
-  std::optional<double> age;         // [h], of the oldest unit, by stated_age()
-};
-
-// Returns the same runs and notes facts about each as it passes.
-RunSource noting(const RunSource& runs, RunFacts& facts) {
-  return {runs.count, [&](const RunSource::Visitor& visit) {
-            runs.for_each([&](const TrainingRun& run) {
-              visit(run);  // whose errors name the run
-              if (!run.sha256.empty()) facts.runs.push_back(mark_of(run));
-              facts.coarsest_resolution =
-                  std::max(facts.coarsest_resolution,
-                           temperature_resolution(run.recording));
-              facts.may_remember =
-                  facts.may_remember || may_remember(run.recording);
-              facts.age = std::max(facts.age, stated_age(run.recording));
-            });
-          }};
 }
 
 // Returns the files as a compensator keeps them.
@@ -276,6 +253,7 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
     unseen = training_rows(noting(held_out, unseen_facts), spec.inputs,
                            spec.rows, rows.range, scale_factor);
   require_different_runs(facts.runs, unseen_facts.runs);
+  require_filters(spec.inputs, facts);
   result.rows = rows.size();
   result.held_out_rows = unseen.size();
 
@@ -292,6 +270,9 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
                                   cause_of_few_rows(rows, spec.rows));
     }
   }();
+
+  // After what an input tells more of: one that never varies, say.
+  require_bias(rows);
 
   c.inputs = selected.candidate.inputs;
   c.bias = std::move(selected.fit.model);
@@ -348,6 +329,9 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
   if (c.sigma) add_way_caution(c.sigma->validity, p.warnings);
   for (const std::string& warning :
        {warning_of_shared_seeds(p.training, p.held_out, groups.has_value()),
+        warning_of_devices(
+            facts, runs.set.has_value() ||
+                       std::holds_alternative<PopulationSpec>(spec.kind)),
         why_no_claim(spec, groups, selected)})
     if (!warning.empty()) p.warnings.push_back(warning);
   return result;

@@ -55,6 +55,9 @@ struct SensitivityResult {
   std::vector<SensitivityFigure> figures;
   std::string text;  ///< what `beamgyro sensitivity` prints
   std::string json;  ///< what `--json` writes
+  /// Devices whose curve their user would not see: at the voltage limit, beyond
+  /// the full scale.
+  std::vector<std::string> warnings = {};
 };
 
 /// Samples devices of a campaign and computes the indices. The result does not

@@ -133,6 +133,9 @@ class MeritsOf {
     return 0;
   }
 
+  // None where no figure needs the curve.
+  const std::optional<StaticCurve>& known_curve() const { return curve_; }
+
  private:
   const StaticCurve& curve() {
     if (!curve_) curve_ = static_curve(gyro_, options_.grid);
@@ -165,6 +168,12 @@ StaticCurve static_curve(const Gyro& gyro, const CurveGrid& grid) {
     curve.drive_voltage(k) = signal.drive_voltage;
   }
   return curve;
+}
+
+CurveLimits curve_limits(const StaticCurve& curve,
+                         const DeviceParameters& device) {
+  return {(curve.drive_voltage.abs() >= device.drive.voltage_limit).any(),
+          (curve.bias.abs() > device.readout.full_scale / kDegree).any()};
 }
 
 Eigen::ArrayXd scale_factor_curve(const Gyro& gyro, const CurveGrid& grid) {
@@ -207,10 +216,13 @@ const FigureOfMerit* find_figure_of_merit(std::string_view name) {
 
 std::vector<double> device_merits(const DeviceParameters& device,
                                   std::span<const Merit> merits,
-                                  const MeritOptions& options) {
+                                  const MeritOptions& options,
+                                  CurveLimits* limits) {
   MeritsOf merits_of(device, options);
   std::vector<double> values;
   for (const Merit merit : merits) values.push_back(merits_of(merit));
+  if (limits != nullptr && merits_of.known_curve())
+    *limits = curve_limits(*merits_of.known_curve(), device);
   return values;
 }
 

@@ -91,14 +91,24 @@ struct MeritOptions {
   std::shared_ptr<const FittedCompensator> compensator;
 };
 
+/// Where the curve of a device is not what its user would see.
+struct CurveLimits {
+  bool is_limited = false;    // the drive is at its voltage limit
+  bool is_saturated = false;  // the bias is beyond the full scale
+};
+CurveLimits curve_limits(const StaticCurve& curve,
+                         const DeviceParameters& device);
+
 /// Returns the figures of one device in the order of `merits`, from the static
-/// solution. Only what they need is computed. Throws
+/// solution. Where these need its curve, `limits` gets what it meets. Only what
+/// they need is computed. Throws
 /// - SimulationFailure for a device that does not work: the drive loop does not
 ///   lock, a passive material would have gains, temperatures do not settle;
 /// - std::invalid_argument for a compensator with an input that a settled gyro
 ///   does not have.
 std::vector<double> device_merits(const DeviceParameters& device,
                                   std::span<const Merit> merits,
-                                  const MeritOptions& options);
+                                  const MeritOptions& options,
+                                  CurveLimits* limits = nullptr);
 
 }  // namespace beamgyro::internal

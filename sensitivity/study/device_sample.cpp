@@ -47,14 +47,17 @@ DrawnMerits drawn_merits(const CampaignPlan& campaign, const DrawPlan& plan,
                          DeviceSampleCounts& counts) {
   const VirtualDevice drawn = campaign.device_at(plan, std::move(uniform));
   DrawnMerits found{{}, drawn.failure};
+  CurveLimits limits;
   if (drawn.device) {
     try {
       found.values =
-          device_merits(*drawn.device, options.merits, options.merit);
+          device_merits(*drawn.device, options.merits, options.merit, &limits);
     } catch (const SimulationFailure& error) {
       found.failure = error.what();
     }
   }
+  counts.limited += limits.is_limited;
+  counts.saturated += limits.is_saturated;
   ++counts.devices;
   if (counts.on_device) counts.on_device();
   if (!found.failure.empty()) ++counts.failures;

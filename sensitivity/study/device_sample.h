@@ -46,6 +46,7 @@ struct DeviceSampleOptions {
 /// them.
 struct DeviceSampleCounts {
   std::atomic<std::uint64_t> devices{0}, failures{0}, all_devices{0};
+  std::atomic<std::uint64_t> limited{0}, saturated{0};  // CurveLimits
   // Called after each, by many threads; what it throws ends the work.
   std::function<void()> on_device = {};
 };

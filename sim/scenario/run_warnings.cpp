@@ -245,6 +245,12 @@ void RunWarnings::add(const Recording& block) {
   const std::vector<double>& beam =
       column_values(block, "true_beam_temperature");
   const std::vector<double>& voltage = column_values(block, "drive_voltage");
+  const std::vector<double>& ambient =
+      column_values(block, "true_ambient_temperature");
+  const std::vector<double>& shown = column_values(block, "temperature");
+  const std::vector<double>& sensor =
+      column_values(block, "true_sensor_temperature");
+  const std::vector<double>& rate = column_values(block, "rate");
   const double limit =
       device_.drive.voltage_limit - device_.readout.drive_voltage_resolution;
   samples_ += block.status.size();
@@ -253,6 +259,14 @@ void RunWarnings::add(const Recording& block) {
     powered_ += (status & kUnpowered) == 0;
     saturated_ += (status & kOutputSaturated) != 0;
     if (is_beyond_ceramic(beam[k])) clamped_.add(beam[k]);
+    if ((status & kUnpowered) == 0) {
+      shown_.add(shown[k]);
+      sensor_.add(sensor[k]);
+      rate_.add(rate[k]);
+      if (device_.thermal.oven &&
+          ambient[k] + kZeroCelsius > device_.thermal.oven->set_point)
+        around_oven_.add(ambient[k]);
+    }
     if ((status & kLoopNotLocked) == 0) continue;
     ++unlocked_;
     limited_ += std::abs(voltage[k]) >= limit;
@@ -262,7 +276,9 @@ void RunWarnings::add(const Recording& block) {
 
 std::string RunWarnings::history_text() const {
   constexpr double kSame = 1e-6;  // [K]
-  if (!scenario_.history || !device_.memory.any()) return {};
+  if (!scenario_.history) return {};
+  if (!device_.memory.any())
+    return "history.points changes nothing: the device has no [memory]";
   const double last = scenario_.history->values().back();
   const double first = scenario_.ambient.value(0);
   if (std::abs(first - last) <= kSame) return {};
@@ -334,11 +350,45 @@ std::string RunWarnings::lock_text() const {
                             lost_.lowest, lost_.highest);
 }
 
+std::string RunWarnings::oven_text() const {
+  if (around_oven_.count == 0) return {};
+  return fmt::format(
+      "thermal.oven.set_point_degC = {:g} is below the surroundings in {} "
+      "powered samples, which are at up to {:.4g} degC; an oven heats and "
+      "cannot cool",
+      device_.thermal.oven->set_point - kZeroCelsius,
+      share(around_oven_.count, powered_), around_oven_.highest);
+}
+
+std::string RunWarnings::coarse_rate_text() const {
+  constexpr double kCoarse = 0.01;  // [-], of the full scale
+  const double step = std::exp2(1.0 - device_.readout.adc_bits);
+  if (powered_ < 2 || rate_.span() > 0 || step < kCoarse) return {};
+  return fmt::format(
+      "readout.adc_bits = {} makes steps of {:.4g} deg/s: {} powered samples "
+      "show the rate {:.4g} deg/s",
+      device_.readout.adc_bits, step * device_.readout.full_scale / kDegree,
+      share(powered_, powered_), rate_.lowest);
+}
+
+std::string RunWarnings::coarse_temperature_text() const {
+  constexpr double kMoves = 1;  // [K]
+  const double step = device_.temperature_sensor.resolution;
+  if (powered_ < 2 || shown_.span() > 0 || sensor_.span() < kMoves ||
+      step < kMoves)
+    return {};
+  return fmt::format(
+      "temperature_sensor.resolution_K = {:g}: {} powered samples show {:.4g} "
+      "degC, while the sensor moves by {:.3g} K",
+      step, share(powered_, powered_), shown_.lowest, sensor_.span());
+}
+
 std::vector<std::string> RunWarnings::texts() const {
   std::vector<std::string> texts = aliasing_warnings(scenario_);
   for (std::string text :
        {soaks_text(scenario_), history_text(), walk_text(), heat_text(),
-        power_text(), saturation_text(), lock_text()})
+        power_text(), saturation_text(), lock_text(), oven_text(),
+        coarse_rate_text(), coarse_temperature_text()})
     if (!text.empty()) texts.push_back(std::move(text));
   return texts;
 }

@@ -21,7 +21,9 @@ namespace beamgyro::internal {
 /// - the samples do not show a motion (aliasing_warnings());
 /// - soaks end after duration_s;
 /// - the history of a unit with memory ends at another temperature than the run
-///   begins with;
+///   begins with, or the unit has no memory;
+/// - an oven is below its surroundings;
+/// - the steps of rate or temperature are so coarse that all samples are equal;
 /// - the random walk of a run without an age goes beyond its bound.
 class RunWarnings {
  public:
@@ -36,10 +38,12 @@ class RunWarnings {
   std::vector<std::string> texts() const;
 
  private:
-  // Of the beam in some of the samples.
+  // Of some of the samples.
   struct Temperatures {
     std::size_t count = 0;
     double lowest = 0, highest = 0;  // [degC]
+
+    double span() const { return highest - lowest; }
 
     void add(double celsius);
   };
@@ -50,13 +54,20 @@ class RunWarnings {
   std::string power_text() const;
   std::string saturation_text() const;
   std::string lock_text() const;
+  std::string oven_text() const;
+  std::string coarse_rate_text() const;
+  std::string coarse_temperature_text() const;
 
   const ScenarioPlan& scenario_;
   const DeviceParameters& device_;
   std::size_t samples_ = 0, powered_ = 0, saturated_ = 0, unlocked_ = 0;
-  std::size_t limited_ = 0;  // not locked, with the voltage at its limit
-  Temperatures lost_;        // not locked, although that is due
-  Temperatures clamped_;     // beyond the linear range of the ceramic
+  std::size_t limited_ = 0;   // not locked, with the voltage at its limit
+  Temperatures lost_;         // not locked, although that is due
+  Temperatures clamped_;      // beyond the linear range of the ceramic
+  Temperatures around_oven_;  // of the surroundings, above the set point
+  // Of the powered samples.
+  Temperatures shown_, sensor_;  // what the sensor shows, and has
+  Temperatures rate_;            // [deg/s] in their place
 };
 
 }  // namespace beamgyro::internal

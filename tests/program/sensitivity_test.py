@@ -41,6 +41,18 @@ class Sensitivity(ProgramTest):
                        "s.json", *arguments)
         return text, self.json("s.json")
 
+    def test_devices_that_never_lock_or_are_saturated_are_said(self):
+        self.assertEqual(self.warned("sensitivity", "c.toml", "--samples", 32), "")
+        for key, value, says in [
+                ("drive.voltage_limit_V", 0.01, "drive.voltage_limit_V at some"),
+                ("readout.full_scale_deg_per_s", 0.01, "output saturates there")]:
+            self.write("bad.toml", CAMPAIGN.format(
+                more=f'"{key}" = {{ uniform = {{ low = {value}, '
+                     f'high = {2 * value} }} }}'))
+            said = self.warned("sensitivity", "bad.toml", "--samples", 32)
+            self.assertRegex(said, r"three: (\d+) of \1 devices ")
+            self.assertIn(says, said)
+
     def test_the_table_and_the_file_have_the_indices_by_their_totals(self):
         text, found = self.found()
         self.assertEqual(list(found["figures"]), FIGURES)

@@ -51,6 +51,20 @@ WARNED = [
     # A history that ends elsewhere than the run begins
     (SCENARIO, ["memory.relaxation={}", "history.points=[[0, 60], [3600, 60]]"],
      "history.points ends at 60 degC and the run begins at 25 degC", "1 K/min"),
+    # A history of a unit that forgets
+    (SCENARIO, ["history.points=[[0, 25], [3600, 25]]"],
+     "history.points changes nothing: the device has no [memory]"),
+    # An oven in a place that is hotter
+    (SCENARIO, ["thermal.oven={set_point_degC=10, max_power_W=3, "
+                "proportional_W_per_K=1, integral_time_s=60}"],
+     "thermal.oven.set_point_degC = 10 is below the surroundings in all 1200",
+     "up to 25 degC", "cannot cool"),
+    # Channels that tell nothing
+    (SCENARIO, ["readout.adc_bits=1"], "readout.adc_bits = 1 makes steps of 150 deg/s",
+     "all 1200 powered samples show the rate 0 deg/s"),
+    (SCENARIO, ["temperature_sensor.resolution_K=100"],
+     "temperature_sensor.resolution_K = 100: all 1200 powered samples show 0 degC",
+     "the sensor moves by"),
     # A run of weeks without an age
     (SCENARIO, ["duration_s=720000", "output_rate_Hz=0.01"],
      "random walk of a run without age.hours has no bound: 0.17 deg/s",
