@@ -16,9 +16,11 @@ struct LogLayout {
   bool header = true;  // the first line holds names
   std::size_t header_line = 0;  // from 1: lines above it are left out; 0: none
   std::size_t skip_rows = 0;    // below the names, or at the start
-  std::vector<std::string> comment_prefixes;  // lines that start so are none
-  std::string repeated_header;  // a line that starts so, and those down to the
-                                // next line of names, are left out
+  // Lines with one of these prefixes are comments.
+  std::vector<std::string> comment_prefixes = {};
+  // A line with this prefix, and those down to the next line of names, are left
+  // out; none when it is empty.
+  std::string repeated_header = {};
   char decimal = '.';  // mark of numbers; ',' is then not found as a delimiter
 };
 

@@ -27,7 +27,7 @@ constexpr double kTolerance = 1e-7;     // local, in the output [rad/s]
 constexpr double kThermalStep = 0.1;    // [s], temperatures linear between
 constexpr double kBlockTime = 5.0;      // [s]
 constexpr double kUsualCost = 0.45;     // of a second, on no old machine [s]
-constexpr double kMeasured = 1.0;       // [s], of the run that is timed
+constexpr double kTimedPart = 1.0;      // [s], of the run that is timed
 constexpr double kWorthMeasuring = 60;  // [s]
 
 // Local error of each state that matters as much as one of 1 rad/s in the
@@ -213,7 +213,7 @@ namespace {
 // Wall time [s] here and now of a second of the run with power.
 double measured_cost(const ScenarioPlan& scenario, const Gyro& gyro) {
   ScenarioPlan first = scenario;
-  first.duration = std::min(kMeasured, scenario.duration);
+  first.duration = std::min(kTimedPart, scenario.duration);
   first.output_rate = std::max(scenario.output_rate, 2 / first.duration);
   first.powered = {{0, first.duration}};
   const auto start = std::chrono::steady_clock::now();
