@@ -36,9 +36,10 @@ class Help:
     usage: str
     sections: list[Section]
 
-    def section(self, title):
-        """The section of this title."""
-        return next(part for part in self.sections if part.title == title)
+    def entries(self, title):
+        """The entries of the section of this title; none without it."""
+        return [entry for part in self.sections if part.title == title
+                for entry in part.entries]
 
 
 def joined(lines):
@@ -153,11 +154,12 @@ def completion(helps):
             if value:
                 cases = " | ".join(f"{command}:{name}" for name in both)
                 values.append(f'    {cases}) echo "{values_of(value)}" ;;')
-        endings = {ending for left, what in text.section("Arguments").entries
+        endings = {ending for left, what in text.entries("Arguments")
                    for ending in re.findall(r"\b[A-Z]+\.(\w+)",
                                             f"{left} {what}")}
-        arguments.append(
-            f'    {command}) echo "@files {" ".join(sorted(endings))}" ;;')
+        if text.entries("Arguments"):
+            arguments.append(
+                f'    {command}) echo "@files {" ".join(sorted(endings))}" ;;')
     tables = {"commands": f'  echo "help{" ".join(helps)}"',
               "options": "\n".join(options), "values": "\n".join(values),
               "arguments": "\n".join(arguments)}
