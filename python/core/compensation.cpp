@@ -127,8 +127,10 @@ py::tuple rows(const std::vector<std::string>& inputs, const std::string& name,
   for (const std::string& input : inputs)
     parsed.push_back(internal::parse_input(input));
   const std::vector<internal::TrainingRun> runs = {{name, "", *recording}};
-  const internal::TrainingRows found = internal::training_rows(
-      internal::source_of(runs), parsed, {.seconds = every_s});
+  internal::RowOptions options;
+  options.seconds = every_s;
+  const internal::TrainingRows found =
+      internal::training_rows(internal::source_of(runs), parsed, options);
   using Rows =
       Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   return py::make_tuple(Rows(found.inputs), found.bias, found.cycle, found.leg);

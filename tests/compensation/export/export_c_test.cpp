@@ -74,7 +74,7 @@ TEST(ExportedC, HeaderCarriesTheWarningsOfTraining) {
   c.provenance.warnings = {"first */ of two", "second"};
   const std::string header = export_c(c, "g").header;
   EXPECT_TRUE(
-      holds(header, "/* WARNING: first __ of two. */\n/* WARNING: second. */"));
+      holds(header, "/* WARNING: first _/ of two. */\n/* WARNING: second. */"));
 }
 
 TEST(ExportedC, SelfTestNamesTheOptionsThatChangeBits) {
@@ -159,7 +159,7 @@ TEST(ExportedC, WhatAFileSaysOfItsMethodStaysInTheComment) {
   FittedCompensator c = spline_compensator();
   c.provenance.method = "spline */ int evil; /* \\\n?";
   const std::string header = export_c(c, "g").header;
-  EXPECT_TRUE(holds(header, "drift: spline __ int evil; __ ___.\n"));
+  EXPECT_TRUE(holds(header, "drift: spline _/ int evil; /_ ___.\n"));
 }
 
 TEST(ExportedC, ParameterBeyondSinglePrecisionIsRefused) {

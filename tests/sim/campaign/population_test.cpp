@@ -68,7 +68,7 @@ TEST_P(Population, AThousandDevicesFollowTheirDistributions) {
   constexpr std::uint32_t kDevices = 1000;
   const CampaignPlan campaign = shipped(GetParam());
   const std::size_t parameters = campaign.device_plan.parameters.size();
-  ASSERT_EQ(parameters, 19u);
+  ASSERT_EQ(parameters, 21u);
   std::vector<std::vector<double>> shares(parameters);
   for (std::uint32_t i = 0; i < kDevices; ++i) {
     const VirtualDevice unit = campaign.device(i);

@@ -122,7 +122,7 @@ TEST(SpecificationFile, WhatIsWrongIsRefusedWithItsPlace) {
        "0.5]"},
       {"name = \"a\"\n[limits_relative_to.raw]\n",
        "2:21: limits_relative_to.raw: unknown key; [limits_relative_to] takes "
-       "before, constant, cubic, spline"},
+       "before, constant, cubic, spline, straight_lines"},
       {"name = \"a\"\n[limits]\nscale_factor = { max = 1, source = \"s\" "
        "}\nscale_factor = { max = 2, source = \"s\" }\n",
        "4:16: not TOML: Error while parsing key-value pair: cannot redefine "
