@@ -96,11 +96,11 @@ def _one(figure: Figure, one: Document) -> None:
     T = np.array(curve["temperature_degC"])
     drawn = _curve(rows[0], one, style.AFTER, "bias taken away", zorder=3)
     rows[0].plot(T, curve["cubic_deg_per_s"], color=style.YELLOW,
-                 ls=(0, (4, 2)), label="cubic of the same training", lw=2.2,
+                 ls=(0, (4, 2)), label="cubic of its training", lw=2.2,
                  zorder=2.5)
     if curve.get("straight_lines_deg_per_s") is not None:
         rows[0].plot(T, curve["straight_lines_deg_per_s"], color=style.GREEN,
-                     ls=(0, (1, 1)), label="straight lines between its soaks",
+                     ls=(0, (1, 1)), label="lines between its soaks",
                      lw=1.8, zorder=2.6)
     rows[0].set(ylabel="bias [°/s]", xlim=(T[0], T[-1]))
     words = "shaded: beyond the training, where the temperature is clamped"
