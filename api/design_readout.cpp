@@ -137,9 +137,11 @@ void Design::meet_noise(std::vector<std::string>& warnings) {
 void Design::set_noise() {
   constexpr double kFloor = 0.6643;  // least Allan deviation over B
   const auto walk = walk_of(sheet_);
-  const std::string key = "noise.angle_random_walk_deg_per_sqrt_s";
-  const double own = base_.number(key);
-  if (walk && own > 0)
+  // What the output of the base shows, with the noise of beam and amplifiers.
+  const double own =
+      walk ? noise_figure(Device::parse(base_.text({}), "device")).value_or(0)
+           : 0;
+  if (own > 0)
     for (const char* other : {"noise.bias_instability_deg_per_s",
                               "noise.rate_random_walk_deg_per_s_per_sqrt_s",
                               "noise.turn_on_deg_per_s"})
