@@ -6,6 +6,9 @@
 
 namespace beamgyro::internal {
 
+/// What beam or board change by before loop_noise() is taken anew [K].
+inline constexpr double kNoiseRefresh = 2.0;
+
 /// Returns the steady state of amplitudes, loops and filters with the beam at
 /// `T_beam` and the board at `T_board` [K]. Throws as static_solution().
 Eigen::VectorXd settled_state(const Gyro& gyro, const EnvelopeOde& ode,

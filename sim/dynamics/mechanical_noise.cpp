@@ -201,4 +201,11 @@ RateNoiseDensity low_frequency_noise(const Gyro& gyro, double beam_temperature,
           std::sqrt(charge * density.amplifier)};
 }
 
+double sensing_angle_random_walk(const Gyro& gyro) {
+  return low_frequency_noise(gyro, kCalibrationTemperature,
+                             kCalibrationTemperature)
+             .total() /
+         std::numbers::sqrt2;
+}
+
 }  // namespace beamgyro::internal

@@ -76,4 +76,8 @@ struct RateNoiseDensity {
 RateNoiseDensity low_frequency_noise(const Gyro& gyro, double beam_temperature,
                                      double board_temperature);
 
+/// Returns the white noise of the sensing in front of the output stage at T_0,
+/// as an angle random walk N [rad/sqrt(s)].
+double sensing_angle_random_walk(const Gyro& gyro);
+
 }  // namespace beamgyro::internal

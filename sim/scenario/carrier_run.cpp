@@ -13,7 +13,7 @@
 #include "sim/numerics/ode.h"
 #include "sim/scenario/drive_lock.h"
 #include "sim/scenario/loop_run.h"
-#include "sim/scenario/rebalance_stability.h"
+#include "sim/scenario/run_stability.h"
 #include "sim/scenario/run_temperatures.h"
 #include "sim/scenario/simulation.h"
 
@@ -260,7 +260,7 @@ void simulate_carrier(const ScenarioPlan& given, const Gyro& gyro,
         grid.times(k, std::min(block_size, grid.count - k));
     RunSamples samples = samples_at(block, gyro, temperatures, trajectory,
                                     twin ? &*twin : nullptr);
-    if (stability) stability->check(scenario, samples);
+    if (stability) check_stability(scenario, samples, *stability);
     on_block(run.block(std::move(samples)));
   }
 }

@@ -8,10 +8,10 @@
 
 #include "sim/dynamics/envelope.h"
 #include "sim/dynamics/gyro.h"
+#include "sim/dynamics/rebalance_stability.h"
 #include "sim/numerics/ode.h"
 #include "sim/scenario/material_limits.h"
 #include "sim/scenario/motion.h"
-#include "sim/scenario/rebalance_stability.h"
 #include "sim/scenario/run_recorder.h"
 #include "sim/scenario/scenario.h"
 

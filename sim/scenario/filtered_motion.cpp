@@ -7,35 +7,12 @@
 #include <utility>
 #include <variant>
 
+#include "sim/signal/two_poles.h"
+
 namespace beamgyro::internal {
 namespace {
 
 using Samples = std::vector<double>;
-
-// y_1' = w (u - y_1), y_2' = w (y_1 - y_2)
-class TwoPoles {
- public:
-  TwoPoles(double corner, double settled)
-      : w_(corner), y1_(settled), y2_(settled) {}
-
-  double output() const { return y2_; }
-
-  // Over `time` [s] of u = (a + b t)^2, exactly. p_n and q_n are what the first
-  // and the second pole make of x^(n-1)/(n-1)!, x = w t: p_n+1 = x^n/n! - p_n,
-  // q_n+1 = p_n+1 - q_n.
-  void advance(double a, double b, double time) {
-    const double x = w_ * time, decay = std::exp(-x);
-    const double p1 = -std::expm1(-x), p2 = x - p1, p3 = x * x / 2 - p2;
-    const double q1 = p1 - x * decay, q2 = p2 - q1, q3 = p3 - q2;
-    const double c1 = a * a, c2 = 2 * a * b / w_, c3 = 2 * b * b / (w_ * w_);
-    y2_ = decay * (y2_ + x * y1_) + c1 * q1 + c2 * q2 + c3 * q3;
-    y1_ = decay * y1_ + c1 * p1 + c2 * p2 + c3 * p3;
-  }
-
- private:
-  double w_;  // [rad/s]
-  double y1_, y2_;
-};
 
 // Of a profile, from sample to sample.
 class ProfileSquare {
@@ -44,8 +21,9 @@ class ProfileSquare {
                 double output_rate)
       : profile_(&profile),
         output_rate_(output_rate),
+        corner_(corner),
         value_(profile.value(0)),
-        filter_(corner, value_ * value_) {
+        filter_{value_ * value_, value_ * value_} {
     const std::vector<double>& times = profile.times();
     next_ = static_cast<std::size_t>(
         std::upper_bound(times.begin(), times.end(), 0.0) - times.begin());
@@ -63,7 +41,7 @@ class ProfileSquare {
         value_ = profile_->values()[next_++];
       }
       advance_to(sample);
-      shown = filter_.output();
+      shown = filter_.second;
     }
   }
 
@@ -76,12 +54,14 @@ class ProfileSquare {
   }
 
   void advance_to(double end) {
-    filter_.advance(value_ + slope_ * (now_ - start_), slope_, end - now_);
+    filter_.advance_square(corner_, value_ + slope_ * (now_ - start_), slope_,
+                           end - now_);
     now_ = end;
   }
 
   const PiecewiseLinear* profile_;
   double output_rate_;  // [Hz]
+  double corner_;       // [rad/s]
   std::size_t sample_ = 0;
   std::size_t next_ = 0;  // first point after now
   double now_ = 0;        // [s]

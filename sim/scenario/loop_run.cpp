@@ -41,7 +41,7 @@ Recording LoopRun::block(RunSamples&& samples) {
     memory_->sample(samples.time, samples.temperature[kBeam], samples.memory);
   }
   fill_unpowered_bias(samples);
-  if (spurious_) spurious_->fill(samples);
+  if (spurious_) fill_spurious_bias(samples);
   motion_.sample(samples);
   if (noise_) noise_->add_next(samples);
   return recorder_.block(std::move(samples));
@@ -101,6 +101,29 @@ void LoopRun::fill_still(const std::vector<std::size_t>& unpowered,
                     .at_rest)
             .rate;
   }
+}
+
+// Of a unit at rest.
+void LoopRun::fill_spurious_bias(RunSamples& samples) {
+  const std::vector<double>& beam = samples.temperature[kBeam];
+  const auto board = [&](std::size_t k) {
+    return electronics_at(gyro_, samples.temperature[kBoard][k]);
+  };
+  samples.spurious_bias.resize(beam.size());
+  if (needs_exact_solution(gyro_)) {
+    for (std::size_t k = 0; k < beam.size(); ++k)
+      samples.spurious_bias[k] = spurious_->at_rest(
+          {beam[k], samples.temperature[kHousing][k]},
+          samples.memory.empty() ? MemoryState{} : samples.memory[k], board(k));
+    return;
+  }
+  const auto [low, high] = std::ranges::minmax_element(beam);
+  const std::vector<double> rate(beam.size(), 0.0);
+  std::vector<StaticMap::Signals> signals(beam.size());
+  StaticMap(gyro_, *low, *high, 0).sample(beam, rate, {}, signals);
+  for (std::size_t k = 0; k < beam.size(); ++k)
+    samples.spurious_bias[k] = spurious_->of(
+        signals[k].at_rest, signals[k].without_spurious, board(k));
 }
 
 }  // namespace beamgyro::internal

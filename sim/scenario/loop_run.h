@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "sim/dynamics/modal_table.h"
+#include "sim/dynamics/spurious_bias.h"
 #include "sim/scenario/filtered_motion.h"
 #include "sim/scenario/sensing_noise.h"
-#include "sim/scenario/spurious_bias.h"
 
 namespace beamgyro::internal {
 
@@ -33,6 +33,7 @@ class LoopRun {
   // settle to at its temperatures, which is what the quasi-static run computes
   // at every sample.
   void fill_unpowered_bias(RunSamples& samples);
+  void fill_spurious_bias(RunSamples& samples);
   void fill_moving(const std::vector<std::size_t>& unpowered,
                    RunSamples& samples);
   void fill_still(const std::vector<std::size_t>& unpowered,

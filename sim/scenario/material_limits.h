@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/scenario/scenario.h"
+#include "sim/thermal/material_check.h"
 #include "sim/thermal/thermal_trajectory.h"
 
 namespace beamgyro::internal {

@@ -15,16 +15,16 @@
 
 #include "config/units.h"
 #include "sim/dynamics/mechanical_noise.h"
+#include "sim/dynamics/spurious_bias.h"
 #include "sim/dynamics/static_map.h"
 #include "sim/numerics/simulation_failure.h"
 #include "sim/scenario/filtered_motion.h"
 #include "sim/scenario/material_limits.h"
 #include "sim/scenario/motion.h"
-#include "sim/scenario/rebalance_stability.h"
+#include "sim/scenario/run_stability.h"
 #include "sim/scenario/run_temperatures.h"
 #include "sim/scenario/sensing_noise.h"
 #include "sim/scenario/simulation.h"
-#include "sim/scenario/spurious_bias.h"
 #include "sim/signal/readout.h"
 #include "sim/thermal/thermal_trajectory.h"
 
@@ -250,14 +250,6 @@ StaticResponse static_response(const Gyro& gyro, const Motion& motion,
   }
 }
 
-// White noise of the sensing in front of the output stage [rad/sqrt(s)].
-double sensing_noise(const Gyro& gyro) {
-  return low_frequency_noise(gyro, kCalibrationTemperature,
-                             kCalibrationTemperature)
-             .total() /
-         std::numbers::sqrt2;
-}
-
 }  // namespace
 
 void simulate_quasistatic(const ScenarioPlan& given, const Gyro& gyro,
@@ -288,7 +280,7 @@ void simulate_quasistatic(const ScenarioPlan& given, const Gyro& gyro,
   if (has_channel_noise(scenario, gyro.device))
     drive_noise.emplace(scenario, gyro, beam, key);
   RunNoise noise = drive_noise ? drive_noise->rms() : RunNoise{};
-  noise.sensing = sensing_noise(gyro);
+  noise.sensing = sensing_angle_random_walk(gyro);
   RunRecorder recorder(scenario, gyro.device, key, noise);
   for (std::size_t k = 0; k < grid.count; k += block_samples) {
     const std::size_t count = std::min(block_samples, grid.count - k);
@@ -312,7 +304,7 @@ void simulate_quasistatic(const ScenarioPlan& given, const Gyro& gyro,
     }
     motion.sample(samples);
     respond(samples);
-    if (stability) stability->check(scenario, samples);
+    if (stability) check_stability(scenario, samples, *stability);
     if (drive_noise) drive_noise->add_next(samples);
     on_block(recorder.block(std::move(samples)));
   }

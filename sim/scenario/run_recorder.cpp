@@ -22,11 +22,6 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 using Samples = std::vector<double>;
 
-NoiseParameters with(NoiseParameters noise, double sensing_noise) {
-  noise.angle_random_walk = std::hypot(noise.angle_random_walk, sensing_noise);
-  return noise;
-}
-
 Samples scaled(Samples values, double factor, double offset = 0) {
   for (double& v : values) v = v * factor + offset;
   return values;
@@ -74,8 +69,8 @@ RunRecorder::RunRecorder(const ScenarioPlan& scenario,
                          const RunNoise& loop_noise)
     : scenario_(scenario),
       device_(device),
-      noise_(with(device.noise, loop_noise.sensing), scenario.output_rate,
-             scenario.seed, key.device, key.run,
+      noise_(with_white_noise(device.noise, loop_noise.sensing),
+             scenario.output_rate, scenario.seed, key.device, key.run,
              scenario.has_age ? std::optional(scenario.age) : std::nullopt),
       turn_on_(turn_on_offsets(device.noise, scenario.powered.size(),
                                scenario.seed, key.device, key.run)),
@@ -83,7 +78,7 @@ RunRecorder::RunRecorder(const ScenarioPlan& scenario,
                                      scenario.seed, key.device, key.run)),
       quadrature_sigma_(
           std::sqrt(scenario.output_rate) *
-          with(device.noise, loop_noise.sensing).angle_random_walk),
+          with_white_noise(device.noise, loop_noise.sensing).angle_random_walk),
       quadrature_stream_(scenario.seed, key.device, key.run,
                          kQuadratureNoiseStream),
       loop_noise_(loop_noise),

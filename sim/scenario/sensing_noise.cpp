@@ -67,35 +67,11 @@ RunNoise SensingNoise::rms() {
 
 SlowDriveNoise::SlowDriveNoise(const ScenarioPlan& scenario, const Gyro& gyro,
                                const TemperatureSpan& beam, const RunKey& key)
-    : scenario_(scenario),
-      gyro_(gyro),
-      ode_(gyro, drive_heating(gyro)),
-      frequency_stream_(scenario.seed, key.device, key.run,
+    : frequency_stream_(scenario.seed, key.device, key.run,
                         kDriveFrequencyNoiseStream),
       voltage_stream_(scenario.seed, key.device, key.run,
                       kDriveVoltageNoiseStream),
-      coldest_(beam.low) {
-  constexpr double kWidest = 4;  // [K]
-  const auto intervals =
-      static_cast<int>(std::ceil((beam.high - beam.low) / kWidest));
-  step_ = intervals > 0 ? (beam.high - beam.low) / intervals : kWidest;
-  for (int i = 0; i <= intervals; ++i)
-    sigma_.push_back(exact_sigma(std::min(coldest_ + i * step_, beam.high)));
-}
-
-Eigen::Vector2d SlowDriveNoise::exact_sigma(double T) {
-  return std::sqrt(scenario_.output_rate) *
-         drive_noise(ode_.loops(), loop_noise(gyro_, ode_, T, T));
-}
-
-Eigen::Vector2d SlowDriveNoise::sigma_at(double beam) const {
-  const double last = static_cast<double>(sigma_.size() - 1);
-  const double place = std::clamp((beam - coldest_) / step_, 0.0, last);
-  const auto left = static_cast<std::size_t>(place);
-  const std::size_t right = std::min(left + 1, sigma_.size() - 1);
-  return sigma_[left] +
-         (place - static_cast<double>(left)) * (sigma_[right] - sigma_[left]);
-}
+      table_(gyro, beam.low, beam.high, scenario.output_rate) {}
 
 void SlowDriveNoise::add_next(RunSamples& samples) {
   const std::size_t count = samples.time.size();
@@ -104,15 +80,15 @@ void SlowDriveNoise::add_next(RunSamples& samples) {
   frequency_stream_.fill_normal(samples.drive_frequency_noise);
   voltage_stream_.fill_normal(samples.drive_voltage_noise);
   for (std::size_t k = 0; k < count; ++k) {
-    const Eigen::Vector2d sigma = sigma_at(samples.temperature[kBeam][k]);
+    const Eigen::Vector2d sigma = table_.at(samples.temperature[kBeam][k]);
     samples.drive_frequency_noise[k] *= sigma(0);
     samples.drive_voltage_noise[k] *= samples.locked[k] ? sigma(1) : 0;
   }
 }
 
-RunNoise SlowDriveNoise::rms() {
-  const Eigen::Vector2d sigma = exact_sigma(kCalibrationTemperature);
-  return {.drive_frequency = sigma(0), .drive_voltage = sigma(1)};
+RunNoise SlowDriveNoise::rms() const {
+  return {.drive_frequency = table_.at_trim()(0),
+          .drive_voltage = table_.at_trim()(1)};
 }
 
 }  // namespace beamgyro::internal

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
+#include "sim/dynamics/drive_noise_table.h"
 #include "sim/dynamics/envelope.h"
 #include "sim/scenario/run_recorder.h"
 #include "sim/signal/linear_noise.h"
@@ -44,13 +44,10 @@ class SensingNoise {
 
 /// Noise of drive frequency and voltage for runs that do not simulate the
 /// loops: white, with the density that SensingNoise has well below their
-/// bandwidth. The density is tabulated over the beam's temperature, with
-/// straight lines between points 4 K apart at most and the board as warm as the
-/// beam: what the board turns is the readout, behind the drive loop.
+/// bandwidth (DriveNoiseTable).
 class SlowDriveNoise {
  public:
-  /// `beam` holds all temperatures of the beam. `scenario` and `gyro` must
-  /// outlive the object.
+  /// `beam` holds all temperatures of the beam.
   SlowDriveNoise(const ScenarioPlan& scenario, const Gyro& gyro,
                  const TemperatureSpan& beam, const RunKey& key);
 
@@ -58,20 +55,11 @@ class SlowDriveNoise {
   void add_next(RunSamples& samples);
 
   /// Rms of a sample, with beam and board at T_0.
-  RunNoise rms();
+  RunNoise rms() const;
 
  private:
-  Eigen::Vector2d exact_sigma(double T);
-  Eigen::Vector2d sigma_at(double beam) const;
-
-  const ScenarioPlan& scenario_;
-  const Gyro& gyro_;
-  EnvelopeOde ode_;
   RandomStream frequency_stream_, voltage_stream_;
-  double coldest_, step_;               // of the table [K]
-  std::vector<Eigen::Vector2d> sigma_;  // of a sample [Hz] [V]
+  DriveNoiseTable table_;
 };
-
-inline constexpr double kNoiseRefresh = 2.0;  // [K]
 
 }  // namespace beamgyro::internal

@@ -12,18 +12,39 @@ double value_or_0(std::span<const double> values, std::size_t k) {
 
 }  // namespace
 
+double measured_frequency(const LoopChannelParameters& channels,
+                          double frequency, double noise, double dT,
+                          double age) {
+  const double y = channels.clock_offset + channels.clock_tc2 * dT * dT +
+                   channels.clock_ageing * (age / kYear);
+  return frequency * (1 + y) + noise;
+}
+
+double measured_voltage(const LoopChannelParameters& channels, double voltage,
+                        double noise, double dT) {
+  return voltage *
+             (1 + channels.voltage_gain_error + channels.voltage_gain_tc * dT) +
+         noise;
+}
+
+double measured_quadrature(const LoopChannelParameters& channels,
+                           double quadrature, double noise, double dT) {
+  const double offset =
+      channels.quadrature_offset +
+      (channels.quadrature_offset_tc + channels.quadrature_offset_tc2 * dT) *
+          dT;
+  return quadrature + offset + noise;
+}
+
 std::vector<double> measured_frequency(const LoopChannelParameters& channels,
                                        std::span<const double> frequency,
                                        std::span<const double> noise,
                                        std::span<const double> dT,
                                        std::span<const double> age) {
   std::vector<double> shown(frequency.size());
-  for (std::size_t k = 0; k < shown.size(); ++k) {
-    const double d = dT[k];
-    const double y = channels.clock_offset + channels.clock_tc2 * d * d +
-                     channels.clock_ageing * (age[k] / kYear);
-    shown[k] = frequency[k] * (1 + y) + value_or_0(noise, k);
-  }
+  for (std::size_t k = 0; k < shown.size(); ++k)
+    shown[k] = measured_frequency(channels, frequency[k], value_or_0(noise, k),
+                                  dT[k], age[k]);
   return shown;
 }
 
@@ -32,11 +53,9 @@ std::vector<double> measured_voltage(const LoopChannelParameters& channels,
                                      std::span<const double> noise,
                                      std::span<const double> dT) {
   std::vector<double> shown(voltage.size());
-  for (std::size_t k = 0; k < shown.size(); ++k) {
-    const double gain =
-        1 + channels.voltage_gain_error + channels.voltage_gain_tc * dT[k];
-    shown[k] = voltage[k] * gain + value_or_0(noise, k);
-  }
+  for (std::size_t k = 0; k < shown.size(); ++k)
+    shown[k] =
+        measured_voltage(channels, voltage[k], value_or_0(noise, k), dT[k]);
   return shown;
 }
 
@@ -45,14 +64,9 @@ std::vector<double> measured_quadrature(const LoopChannelParameters& channels,
                                         std::span<const double> noise,
                                         std::span<const double> dT) {
   std::vector<double> shown(quadrature.size());
-  for (std::size_t k = 0; k < shown.size(); ++k) {
-    const double d = dT[k];
-    const double offset =
-        channels.quadrature_offset +
-        (channels.quadrature_offset_tc + channels.quadrature_offset_tc2 * d) *
-            d;
-    shown[k] = quadrature[k] + offset + value_or_0(noise, k);
-  }
+  for (std::size_t k = 0; k < shown.size(); ++k)
+    shown[k] = measured_quadrature(channels, quadrature[k],
+                                   value_or_0(noise, k), dT[k]);
   return shown;
 }
 

@@ -22,12 +22,21 @@ struct LoopChannelParameters {
 inline constexpr double kYear = 31557600;  // 365.25 days [s]
 
 /// Returns what the channels show of their noise-free values, with the board dT
-/// [K] above T_0 and an age t since the trim [s], one for each sample:
+/// [K] above T_0 and an age t since the trim [s]:
 ///   frequency   f_d (1 + y_0 + y_T dT^2 + y_a t / year) + noise,
 ///   voltage     V_D (1 + g_0 + g_T dT) + noise,
 ///   quadrature  Q + q_0 + q_T dT + q_T2 dT^2 + noise.
 /// A clock that counts slow shows a high frequency, so y is the error of the
-/// counted frequency. `noise` is empty or has one value for each sample; no
+/// counted frequency. No resolution is applied.
+double measured_frequency(const LoopChannelParameters& channels,
+                          double frequency, double noise, double dT,
+                          double age);
+double measured_voltage(const LoopChannelParameters& channels, double voltage,
+                        double noise, double dT);
+double measured_quadrature(const LoopChannelParameters& channels,
+                           double quadrature, double noise, double dT);
+
+/// The same of many samples. `noise` is empty or has one value for each; no
 /// resolution is applied.
 std::vector<double> measured_frequency(const LoopChannelParameters& channels,
                                        std::span<const double> frequency,

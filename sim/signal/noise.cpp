@@ -33,6 +33,11 @@ void check_noise(const NoiseParameters& p) {
 
 }  // namespace
 
+NoiseParameters with_white_noise(NoiseParameters noise, double N) {
+  noise.angle_random_walk = std::hypot(noise.angle_random_walk, N);
+  return noise;
+}
+
 WalkSinceTrim::WalkSinceTrim(std::uint64_t seed, std::uint32_t device,
                              double correlation)
     : seed_(seed), device_(device), correlation_(correlation) {
@@ -135,6 +140,10 @@ void RateNoise::add_next(std::span<double> rate) {
   }
 }
 
+double recovered_transient(const NoiseParameters& parameters, double off_time) {
+  return -std::expm1(-off_time / parameters.turn_on_recovery);
+}
+
 std::vector<double> turn_on_offsets(const NoiseParameters& parameters,
                                     std::size_t cycles, std::uint64_t seed,
                                     std::uint32_t device, std::uint32_t run) {
@@ -156,7 +165,7 @@ std::vector<double> turn_on_transients(const NoiseParameters& parameters,
   stream.fill_normal(transients);
   for (std::size_t i = 0; i < transients.size(); ++i)
     transients[i] *= parameters.turn_on_transient *
-                     -std::expm1(-off_times[i] / parameters.turn_on_recovery);
+                     recovered_transient(parameters, off_times[i]);
   return transients;
 }
 

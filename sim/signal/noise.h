@@ -62,6 +62,9 @@ struct NoiseParameters {
   double walk_correlation = 3.6e5;   // t_c of WalkSinceTrim [s]
 };
 
+/// Returns `noise` with an independent white noise N [rad/sqrt(s)] more.
+NoiseParameters with_white_noise(NoiseParameters noise, double N);
+
 /// White noise, flicker and rate random walk of one run [rad/s], one value a
 /// sample at the times m / output_rate:
 ///   white    variance N^2 x output_rate,
@@ -97,6 +100,10 @@ class RateNoise {
   std::size_t aged_samples_ = 0;         // of walk_since_trim_, taken
   std::optional<WalkSinceTrim> walk_since_trim_;
 };
+
+/// Returns what is left of a turn-on transient of size 1 after the power was
+/// off for `off_time` [s]: 1 - e^{-t_off/tau_off}.
+double recovered_transient(const NoiseParameters& parameters, double off_time);
 
 /// Turn-on offsets [rad/s] of the first `cycles` power cycles of a run,
 /// independent normals of sigma parameters.turn_on; cycle i gets the same value

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "sim/signal/two_poles.h"
+
 namespace beamgyro::internal {
 namespace {
 
@@ -19,41 +21,6 @@ void require_positive(double value, const char* name, const char* unit) {
         fmt::format("{} is {} {}, must be above 0", name, value, unit));
 }
 
-// A transient that has died out is 0: halved for ever it would stay a
-// subnormal number, and those are a hundred times slower.
-double alive(double transient) {
-  return std::abs(transient) < 1e-290 ? 0.0 : transient;
-}
-
-// A stretch of time in which the input is linear.
-struct Stretch {
-  double x;           // w_o h
-  double decay;       // e^-x
-  double mean_decay;  // (1 - e^-x) / x
-};
-
-Stretch stretch(double corner, double duration) {
-  const double x = corner * duration;
-  const double lost = -std::expm1(-x);
-  return {x, 1.0 - lost, x > 0.0 ? lost / x : 1.0};
-}
-
-struct TwoPoles {
-  double first, second;  // y_1, y_2
-
-  // Over the stretch the input runs from `input` to `input + rise`. Written in
-  // the differences to the input, with nothing large that cancels however steep
-  // the rise.
-  void advance(const Stretch& h, double input, double rise) {
-    const double behind1 = alive(first - input);
-    const double behind2 = alive(second - input);
-    const double end = input + rise;
-    first = end + h.decay * behind1 - rise * h.mean_decay;
-    second = end + h.decay * (behind2 + h.x * behind1) +
-             rise * (h.decay - 2.0 * h.mean_decay);
-  }
-};
-
 // The filter under a profile, from sample to sample.
 class ProfileResponse {
  public:
@@ -62,7 +29,7 @@ class ProfileResponse {
       : input_(&input),
         corner_(corner),
         output_rate_(output_rate),
-        interval_(stretch(corner, 1.0 / output_rate)) {
+        interval_(filter_stretch(corner, 1.0 / output_rate)) {
     const std::vector<double>& times = input.times();
     next_ = static_cast<std::size_t>(
         std::upper_bound(times.begin(), times.end(), 0.0) - times.begin());
@@ -81,12 +48,13 @@ class ProfileResponse {
       const double sample = static_cast<double>(sample_) / output_rate_;
       bool whole = sample_++ > 0;
       for (; next_ < times.size() && times[next_] < sample; whole = false) {
-        advance(stretch(corner_, times[next_] - now_), times[next_]);
+        advance(filter_stretch(corner_, times[next_] - now_), times[next_]);
         while (next_ + 1 < times.size() && times[next_ + 1] == now_) ++next_;
         ++next_;
         begin_piece(input_->values()[next_ - 1]);
       }
-      advance(whole ? interval_ : stretch(corner_, sample - now_), sample);
+      advance(whole ? interval_ : filter_stretch(corner_, sample - now_),
+              sample);
       value = filter_.second;
     }
   }
@@ -102,16 +70,16 @@ class ProfileResponse {
                        (input_->times()[next_] - now_);
   }
 
-  void advance(const Stretch& h, double until) {
+  void advance(const FilterStretch& h, double until) {
     filter_.advance(h, start_value_ + slope_ * (now_ - start_),
                     slope_ * (until - now_));
     now_ = until;
   }
 
   const PiecewiseLinear* input_;
-  double corner_;       // [rad/s]
-  double output_rate_;  // [Hz]
-  Stretch interval_;    // between two samples
+  double corner_;           // [rad/s]
+  double output_rate_;      // [Hz]
+  FilterStretch interval_;  // between two samples
   std::size_t sample_ = 0;
   std::size_t next_ = 0;  // first point after now
   bool is_constant_ = false;

@@ -11,6 +11,12 @@
 
 namespace beamgyro::internal {
 
+double sensed_temperature(const TemperatureSensorParameters& parameters,
+                          double temperature, double n) {
+  return (temperature - kZeroCelsius) + parameters.offset +
+         parameters.noise * n;
+}
+
 TemperatureSensor::TemperatureSensor(
     const TemperatureSensorParameters& parameters, bool noise_enabled,
     std::uint64_t seed, std::uint32_t device, std::uint32_t run)
@@ -33,8 +39,7 @@ std::vector<double> TemperatureSensor::readings(
   std::vector<double> readings(temperature.size(), 0.0);
   if (parameters_.noise > 0.0) stream_.fill_normal(readings);
   for (std::size_t i = 0; i < readings.size(); ++i)
-    readings[i] = (temperature[i] - kZeroCelsius) + parameters_.offset +
-                  parameters_.noise * readings[i];
+    readings[i] = sensed_temperature(parameters_, temperature[i], readings[i]);
   quantise(readings, parameters_.resolution);
   return readings;
 }

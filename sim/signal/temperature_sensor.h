@@ -15,6 +15,11 @@ struct TemperatureSensorParameters {
   double offset = 0.0;      // [K]
 };
 
+/// Returns what a sensor shows of `temperature` [K], in [degC] and before its
+/// resolution, with the number n of its noise.
+double sensed_temperature(const TemperatureSensorParameters& parameters,
+                          double temperature, double n);
+
 /// The temperature sensor. A reading [degC] is the multiple of `resolution` on
 /// the Celsius scale that is nearest to
 ///   temperature + offset + noise n,  n from the stream kTemperatureSensor.

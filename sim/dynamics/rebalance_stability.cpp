@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "sim/scenario/rebalance_stability.h"
+#include "sim/dynamics/rebalance_stability.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstddef>
 #include <utility>
 
 #include "config/units.h"
 #include "sim/dynamics/loop_noise.h"
 #include "sim/numerics/simulation_failure.h"
-#include "sim/scenario/sensing_noise.h"
 
 namespace beamgyro::internal {
 
@@ -29,15 +27,6 @@ void RebalanceStability::check(double t, double beam, double board) {
       "readout.rebalance_bandwidth_Hz",
       t, beam - kZeroCelsius, 1 / growth,
       kCalibrationTemperature - kZeroCelsius));
-}
-
-void RebalanceStability::check(const ScenarioPlan& scenario,
-                               const RunSamples& samples) {
-  for (std::size_t k = 0; k < samples.time.size(); ++k) {
-    if (samples.locked[k] && powered_at(scenario.powered, samples.time[k]))
-      check(samples.time[k], samples.temperature[kBeam][k],
-            samples.temperature[kBoard][k]);
-  }
 }
 
 std::optional<RebalanceStability> rebalance_stability(const Gyro& gyro) {

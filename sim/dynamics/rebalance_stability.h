@@ -4,8 +4,6 @@
 #include <optional>
 
 #include "sim/dynamics/envelope.h"
-#include "sim/scenario/run_recorder.h"
-#include "sim/scenario/scenario.h"
 
 namespace beamgyro::internal {
 
@@ -23,8 +21,6 @@ class RebalanceStability {
   /// board at these temperatures [K], which a powered and locked unit has at
   /// `t` [s]. The message names time, temperature and keys.
   void check(double t, double beam, double board);
-  /// The same for all powered and locked samples.
-  void check(const ScenarioPlan& scenario, const RunSamples& samples);
 
  private:
   const Gyro& gyro_;

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <span>
-
 #include "sim/dynamics/gyro.h"
-#include "sim/scenario/run_recorder.h"
 
 namespace beamgyro::internal {
 
@@ -36,12 +33,11 @@ class SpuriousBias {
             const MemoryState& memory, const CaseMotion& motion,
             const Electronics& board);
 
-  /// Writes samples.spurious_bias for a unit at rest.
-  void fill(RunSamples& samples);
+  /// The same with both solved exactly, of a unit at rest.
+  double at_rest(const SpuriousTemperatures& temperatures,
+                 const MemoryState& memory, const Electronics& board);
 
  private:
-  void fill_exactly(RunSamples& samples);
-
   const Gyro& gyro_;
   Gyro without_;
   LockPath path_, path_without_;
