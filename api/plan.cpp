@@ -23,7 +23,7 @@
 #include "planning/soak_length.h"
 #include "planning/soak_model.h"
 #include "report/plan_report.h"
-#include "sim/signal/noise.h"
+#include "sim/dynamics/mechanical_noise.h"
 
 namespace beamgyro {
 namespace internal {
@@ -90,9 +90,14 @@ ChamberTime time_of(const PlanOptions& options) {
   return time;
 }
 
+const Gyro& gyro_of(const Device& device) {
+  return device.content().gyro.of(device.content().device);
+}
+
 // Flicker is seen by a soak as the floor of its Allan deviation, white noise by
 // the fewest rows that a soak has.
-SlowNoise slow_noise(const NoiseParameters& noise) {
+SlowNoise slow_noise(const Gyro& gyro) {
+  const NoiseParameters noise = output_noise(gyro);
   const double flicker = std::sqrt(2.0 * std::numbers::ln2 / std::numbers::pi) *
                          noise.bias_instability;
   const double white =
@@ -103,10 +108,10 @@ SlowNoise slow_noise(const NoiseParameters& noise) {
 
 // What the device's thermal model says of soaks and of the minutes after
 // power-on, and its noise.
-SoakBehaviour behaviour_of(const PlanOptions& options,
-                           const DeviceParameters& device,
+SoakBehaviour behaviour_of(const PlanOptions& options, const Gyro& gyro,
                            const TemperatureRange& range,
                            const ChamberTime& time) {
+  const DeviceParameters& device = gyro.device;
   const double farthest =
       std::abs(range.lowest - time.start) > std::abs(range.highest - time.start)
           ? range.lowest
@@ -124,7 +129,7 @@ SoakBehaviour behaviour_of(const PlanOptions& options,
     found.rule.after_power_on =
         row ? std::max(kAfterPowerOn, std::ceil(row->way / time.ramp))
             : kAfterPowerOn;
-  found.noise = slow_noise(device.noise);
+  found.noise = slow_noise(gyro);
   found.temperature_noise =
       temperature_noise(device.temperature_sensor.resolution, found.rule);
   found.minutes = options.hold_min;
@@ -186,9 +191,9 @@ struct PlanStudy {
               },
               {.range = range,
                .bias_only = asked.bias_only,
-               .of_sweep = slow_noise(unit.content().device.noise)}),
+               .of_sweep = slow_noise(gyro_of(unit))}),
         planner(model, chamber, time,
-                behaviour_of(asked, unit.content().device, range, time)) {}
+                behaviour_of(asked, gyro_of(unit), range, time)) {}
 
   // A goal counts as met within the digits that are printed.
   SoakPlan chosen() const {

@@ -19,6 +19,7 @@
 #include "compensation/firmware/c_text.h"
 #include "config/units.h"
 #include "include/beamgyro/export.h"
+#include "sim/dynamics/mechanical_noise.h"
 #include "sim/thermal/thermal_parameters.h"
 
 namespace beamgyro {
@@ -240,15 +241,16 @@ void sdf_file(const SimulatorRequest& asked, const std::string& name,
         asked.devices.size(), asked.compensators.size()));
   const Device& device = asked.devices[0];
   const DeviceParameters& own = device.content().device;
+  const NoiseParameters shown = output_noise(device.content().gyro.of(own));
   const double ambient = asked.options.temperature_degC.value_or(25);
   const RestCurve run = warm_up_run(device, ambient, result.warnings);
   const SdfNoise noise{
       .update_rate = asked.options.update_rate_Hz.value_or(100),
       .mean = run.bias.back() * kDegree,
-      .angle_random_walk = own.noise.angle_random_walk,
-      .turn_on = own.noise.turn_on,
-      .rate_random_walk = own.noise.rate_random_walk,
-      .walk_correlation = own.noise.walk_correlation,
+      .angle_random_walk = shown.angle_random_walk,
+      .turn_on = shown.turn_on,
+      .rate_random_walk = shown.rate_random_walk,
+      .walk_correlation = shown.walk_correlation,
       .resolution = 2 * own.readout.full_scale /
                     std::exp2(static_cast<double>(own.readout.adc_bits))};
   const char axis = axes_of(asked.options.axes, 1, "devices")[0];

@@ -208,4 +208,8 @@ double sensing_angle_random_walk(const Gyro& gyro) {
          std::numbers::sqrt2;
 }
 
+NoiseParameters output_noise(const Gyro& gyro) {
+  return with_white_noise(gyro.device.noise, sensing_angle_random_walk(gyro));
+}
+
 }  // namespace beamgyro::internal

@@ -80,4 +80,8 @@ RateNoiseDensity low_frequency_noise(const Gyro& gyro, double beam_temperature,
 /// as an angle random walk N [rad/sqrt(s)].
 double sensing_angle_random_walk(const Gyro& gyro);
 
+/// Returns the noise that the output of a gyro shows: that of its output stage,
+/// with that of the sensing in its white noise.
+NoiseParameters output_noise(const Gyro& gyro);
+
 }  // namespace beamgyro::internal
