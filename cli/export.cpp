@@ -77,6 +77,12 @@ void require_compensators(const ExportArguments& arguments) {
       throw option_error(
           "{}: is for the format {}, not for {}", NamedOption{option},
           std::string_view(option) == "range" ? kSitl : kSdf, arguments.format);
+  constexpr std::size_t kMost = 3;  // one for each axis
+  if (arguments.inputs.size() > kMost)
+    throw std::invalid_argument(fmt::format(
+        "\"{}\" is one file too many for the format {}; expected beamgyro "
+        "export of up to {} compensators",
+        arguments.inputs[kMost].string(), arguments.format, kMost));
   for (const fs::path& file : arguments.inputs)
     if (is_of_kind(file, FileKind::kDevice))
       throw std::invalid_argument(fmt::format(

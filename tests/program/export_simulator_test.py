@@ -3,13 +3,14 @@
 
 import math
 import re
+import tomllib
 import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 
 from exported import ExportTest
 from pages import page, rows
-from program import SCENARIOS, ProgramTest
+from program import ROOT, SCENARIOS, ProgramTest
 from rejections import Rejections, row
 
 single = np.float32
@@ -233,17 +234,30 @@ class ExportSdf(ProgramTest):
         self.assertIsNotNone(self.noise)
         for name, expected in {
                 "update_rate": 400,
-                "stddev": math.radians(0.010 * 20),  # N sqrt(f)
                 "bias_mean": 0, "bias_stddev": math.radians(0.03),
                 "dynamic_bias_stddev": math.radians(2e-4),
                 "dynamic_bias_correlation_time": 360000,  # 100 h
                 "precision": math.radians(300 / 2 ** 16)}.items():
             self.assertAlmostEqual(values[name], expected,
                                    delta=1e-8 * abs(expected))
+        # N sqrt(f), with a little of the motion of the beam.
+        self.assertAlmostEqual(values["stddev"], math.radians(0.010 * 20),
+                               delta=1e-4 * values["stddev"])
         self.ok("run", SCENARIOS / "warm_up.toml", "--set",
                 f'device="{self.dir}/device.toml"', "-o", "warm.h5")
         bias = self.signals("warm.h5")["true_bias"][-1]
         self.assertAlmostEqual(math.degrees(values["mean"]), bias, delta=1e-4)
+
+    def test_the_noise_is_that_of_the_output(self):
+        """Of a device whose beam and amplifiers make most of it."""
+        self.ok("export", SCENARIOS / "devices/trimmed.toml", "--format", "sdf",
+                "-o", "small", "--update-rate-Hz", 100)
+        root = ElementTree.parse(self.dir / "small/trimmed.sdf").getroot()
+        density = tomllib.loads(
+            (ROOT / "docs/hardware/xv7081bb.toml").read_text())[
+                "data_sheet"]["noise_density_deg_per_s_per_sqrt_Hz"]
+        walk = math.degrees(values_of(root)["stddev"]) / 10
+        self.assertAlmostEqual(walk * 2 ** 0.5, density, delta=0.02 * density)
 
     def test_gazebo_walks_as_the_device_does(self):
         """A step of its dynamic bias, by GaussianNoiseModel.cc of gz-sensors,

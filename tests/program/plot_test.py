@@ -74,7 +74,7 @@ class Recordings(PlotTest):
                   "drive [Hz]", "quad. [°/s]", "time [min]", "sensor", "beam")
         self.assertEqual(
             curves(svg)[:2], ["curve-1-measured",
-                              "curve-1-true-bias-without-noise"])
+                              "curve-1-true-bias-without-noise-and-turn-on-offset"])
 
     def test_the_csv_of_a_run_has_the_same_curves(self):
         self.ok("run", "rest.toml", "-o", "rest.csv")
@@ -301,7 +301,7 @@ class Compensators(PlotTest):
                   "measured temperature [°C]", "in-sample", "held out",
                   "rms left [°/s]")
         self.assertEqual(sorted(curves(svg)), [
-            "curve-1-bias-taken-away", "curve-1-cubic-of-the-same-training"])
+            "curve-1-bias-taken-away", "curve-1-cubic-of-its-training"])
 
     def test_one_that_follows_other_inputs_has_no_curve(self):
         name = self.train("net", NETWORK.replace(

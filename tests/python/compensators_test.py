@@ -152,7 +152,7 @@ def test_a_torch_module_is_a_compensator(sweeps):
 
 
 def test_validation_of_a_function_prints_and_shows(sweeps):
-    trained = bg.train(CUBIC, sweeps[0])
+    trained = bg.train(CUBIC, [sweeps[0], sweeps[2]])  # one tells no sigma
 
     def the_same(signals):
         own = bg.compensate(trained, signals)

@@ -78,7 +78,7 @@ def test_a_mapping_makes_the_set_of_its_file(tmp_path):
     ({"run": 3}, "campaign: run: expected a sequence of mappings"),
     ({"device": 3}, "campaign: device 3: expected a file"),
     ({"run": [{"name": "rest", "scenario": {**REST, "fidelity": "x"}}]},
-     "scenario_0.toml:.*fidelity")])
+     "scenario.toml:.*fidelity")])
 def test_a_wrong_mapping_is_named_by_its_key(keys, words):
     with pytest.raises(ValueError, match=words):
         bg.Campaign({**KEYS, **keys})

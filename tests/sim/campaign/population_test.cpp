@@ -47,6 +47,8 @@ const std::map<std::string, Cumulative> kDistributions = {
     {"readout_phase_tc_rad_per_K", normal(0, 2e-4)},
     {"readout_feedthrough_F", normal(0, 0.02e-12)},
     {"readout_offset_tc_deg_per_s_per_K", normal(0, 0.012)},
+    {"readout_offset_trim_deg_per_s", normal(0, 1)},
+    {"readout_scale_factor_error", normal(0, 0.01)},
 };
 
 const Cumulative& distribution_of(const std::string& name) {
