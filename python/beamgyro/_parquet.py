@@ -14,10 +14,10 @@ from beamgyro import _checks, _lazy
 from beamgyro._windows import Columns
 
 if TYPE_CHECKING:
-    from beamgyro._set import Set
+    from beamgyro._set import Set as _Set
 
 
-def tables_of(source: Set, rows: Sequence[tuple[str, int]],
+def tables_of(source: _Set, rows: Sequence[tuple[str, int]],
               columns: Columns) -> Iterator[dict[str, Any]]:
     """The columns of each run of a device, without samples that say nothing.
     """
@@ -36,7 +36,7 @@ def tables_of(source: Set, rows: Sequence[tuple[str, int]],
             columns.target: target[good]}
 
 
-def write(source: Set, rows: Sequence[tuple[str, int]], columns: Columns,
+def write(source: _Set, rows: Sequence[tuple[str, int]], columns: Columns,
           path: Any) -> None:
     """Write the tables, a row group for each run of a device."""
     name = _checks.path(path, "path")

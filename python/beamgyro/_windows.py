@@ -13,7 +13,7 @@ import numpy as np
 from beamgyro import _arguments, _checks, _core
 
 if TYPE_CHECKING:
-    from beamgyro._set import Set
+    from beamgyro._set import Set as _Set
 
 Array = np.ndarray[Any, Any]
 
@@ -92,7 +92,7 @@ class Windows:
     each.
     """
 
-    def __init__(self, source: Set, rows: Sequence[tuple[str, int]],
+    def __init__(self, source: _Set, rows: Sequence[tuple[str, int]],
                  columns: Columns, window: int, step: int) -> None:
         if not rows:
             raise ValueError("part: has no run with values; expected at least "
