@@ -220,13 +220,32 @@ H5Id properties_for(OpenFile& file) {
   return access;
 }
 
+/// How many bytes a file has by its first block, or 0 where that does not tell:
+/// behind a block of the user, say. "Superblock" of the HDF5 File Format
+/// Specification 3.0: an address behind the last byte, counted from a base that
+/// stands 16 bytes before it.
+std::uint64_t stated_size(OpenFile& file) {
+  std::array<std::byte, 56> bytes{};
+  if (file.read_at(0, bytes) < bytes.size() ||
+      !starts_with(bytes, kHdf5Signature))
+    return 0;
+  const std::uint64_t version = little_number(bytes, 8, 1);
+  const std::uint64_t address = little_number(bytes, version < 2 ? 13 : 9, 1);
+  if (version > 3 || address != 8) return 0;
+  const std::size_t base = version == 0   ? 24
+                           : version == 1 ? 28
+                                          : 12;  // [byte]
+  return little_number(bytes, base, 8) == 0 ? little_number(bytes, base + 16, 8)
+                                            : 0;
+}
+
 // HDF5 requires a name for a file.
 constexpr const char* kName = "beamgyro";
 
 }  // namespace
 
 H5Id open_hdf5_file(OpenFile& file) {
-  if (const std::uint64_t whole = stated_hdf5_size(file); whole > file.size())
+  if (const std::uint64_t whole = stated_size(file); whole > file.size())
     throw Hdf5Error(fmt::format(
         "{} of {} bytes are there; expected a whole copy", file.size(), whole));
   return {H5Fopen(kName, H5F_ACC_RDONLY, properties_for(file)), H5Fclose,
