@@ -90,10 +90,6 @@ ChamberTime time_of(const PlanOptions& options) {
   return time;
 }
 
-const Gyro& gyro_of(const Device& device) {
-  return device.content().gyro.of(device.content().device);
-}
-
 // Flicker is seen by a soak as the floor of its Allan deviation, white noise by
 // the fewest rows that a soak has.
 SlowNoise slow_noise(const Gyro& gyro) {
@@ -185,15 +181,15 @@ struct PlanStudy {
                                : known_range(population_of(population), view)),
         chamber(chamber_of(asked, range)),
         time(time_of(asked)),
+        behaviour(behaviour_of(asked, gyro_of(unit), range, time)),
         model(population_of(population),
               [this](const Eigen::ArrayXd& T) {
                 return view.sensor_temperatures(T);
               },
               {.range = range,
                .bias_only = asked.bias_only,
-               .of_sweep = slow_noise(gyro_of(unit))}),
-        planner(model, chamber, time,
-                behaviour_of(asked, gyro_of(unit), range, time)) {}
+               .of_sweep = behaviour.noise}),
+        planner(model, chamber, time, behaviour) {}
 
   // A goal counts as met within the digits that are printed.
   SoakPlan chosen() const {
@@ -214,6 +210,7 @@ struct PlanStudy {
   ChamberView view;
   TemperatureRange range, chamber;  // [degC]
   ChamberTime time;
+  SoakBehaviour behaviour;
   SoakModel model;
   Planner planner;
 };

@@ -137,10 +137,11 @@ Planner::Shown Planner::shown(const std::vector<double>& soaks,
   return {with_start_row(std::move(read), row), std::move(errors)};
 }
 
-ResidualForecast Planner::forecast(const std::vector<double>& soaks,
+ResidualForecast Planner::forecast(const SoakModel& model,
+                                   const std::vector<double>& soaks,
                                    std::size_t minutes) const {
   const Shown all = shown(soaks, minutes, start_row_of(soaks));
-  return forecast_residual(model_, all.soaks, all.errors);
+  return forecast_residual(model, all.soaks, all.errors);
 }
 
 // Each device with the soaks that were chosen without it.
@@ -166,12 +167,14 @@ bool Planner::has_folds() const {
 
 ResidualForecast Planner::left_over(const SoakPlan& plan,
                                     const TemperatureRange& range) const {
-  const SoakModel model = model_.over(range);
-  if (forecast_basis(model.population()) == ForecastBasis::kDevices)
-    return forecast_with_intervals(draws(model, plan));
-  const Shown all = shown(plan.temperatures, whole_minutes(plan),
-                          start_row_of(plan.temperatures));
-  return forecast_residual(model, all.soaks, all.errors);
+  return expected(model_.over(range), plan);
+}
+
+ResidualForecast Planner::expected(const SoakModel& model,
+                                   const SoakPlan& plan) const {
+  return forecast_basis(model.population()) == ForecastBasis::kDevices
+             ? forecast_with_intervals(draws(model, plan))
+             : forecast(model, plan.temperatures, whole_minutes(plan));
 }
 
 ResidualDraws Planner::line_draws(const SoakPlan& even) const {
@@ -194,7 +197,7 @@ std::optional<MedianRatio> Planner::gain(const SoakPlan& plan,
 std::size_t Planner::hold_minutes(const std::vector<double>& soaks) const {
   if (behaviour_.minutes) return *behaviour_.minutes;
   const auto median = [&](std::size_t minutes) {
-    return forecast(soaks, minutes).median;
+    return forecast(model_, soaks, minutes).median;
   };
   std::size_t best = shortest_;
   double least = median(best);
@@ -225,9 +228,7 @@ SoakPlan Planner::judged_with(std::vector<double> soaks, double hold,
   std::ranges::sort(soaks);
   const double hours = chamber_hours(soaks, {time_.start, time_.ramp, hold});
   SoakPlan plan = {std::move(soaks), hold, hours, {}, std::move(of_folds)};
-  plan.expected = forecast_basis(model_.population()) == ForecastBasis::kDevices
-                      ? forecast_with_intervals(draws(model_, plan))
-                      : forecast(plan.temperatures, whole_minutes(plan));
+  plan.expected = expected(model_, plan);
   return plan;
 }
 

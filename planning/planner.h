@@ -131,8 +131,10 @@ class Planner {
               const std::optional<StartRow>& row) const;
   ResidualDraws line_draws(const SoakPlan& even) const;  // no row of the start
   std::optional<ResidualForecast> straight_lines(const SoakPlan& even) const;
-  ResidualForecast forecast(const std::vector<double>& soaks,
+  ResidualForecast forecast(const SoakModel& model,
+                            const std::vector<double>& soaks,
                             std::size_t minutes) const;
+  ResidualForecast expected(const SoakModel& model, const SoakPlan& plan) const;
   ResidualDraws draws(const SoakModel& model, const SoakPlan& plan) const;
   bool has_folds() const;
   std::size_t hold_minutes(const std::vector<double>& soaks) const;
