@@ -21,9 +21,7 @@ class Design {
   DesignedDevice finished();
 
  private:
-  Device device() const {
-    return Device::parse(text_.text(heading_), "device");
-  }
+  Device device() const { return text_.device(heading_); }
 
   void scale_beam(double length_factor, double side_factor);
   void meet_frequency();

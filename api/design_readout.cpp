@@ -7,9 +7,11 @@
 #include "api/data_sheet.h"
 #include "api/design.h"
 #include "api/device_figures.h"
+#include "api/scenario_state.h"
+#include "config/units.h"
+#include "sim/dynamics/mechanical_noise.h"
 
 namespace beamgyro::internal {
-
 void Design::set_readout() {
   const double scale =
       sheet_.supply_V
@@ -84,15 +86,8 @@ void Design::meet_noise(std::vector<std::string>& warnings) {
   if (!walk) return;
   const std::string key = "noise.angle_random_walk_deg_per_sqrt_s";
   const std::string amplifier = "readout.amplifier_noise_V_per_sqrt_Hz";
-  const auto own_noise = [&](const DeviceText& of) {
-    DeviceText text = of;
-    for (const char* other : {"noise.angle_random_walk_deg_per_sqrt_s",
-                              "noise.bias_instability_deg_per_s",
-                              "noise.rate_random_walk_deg_per_s_per_sqrt_s",
-                              "noise.turn_on_deg_per_s"})
-      text.set(other, 0.0, "");
-    text.set("readout.adc_bits", 32.0, "");
-    return noise_figure(Device::parse(text.text({}), "device")).value_or(0);
+  const auto own_noise = [](const DeviceText& text) {
+    return sensing_angle_random_walk(gyro_of(text.device())) / kDegree;
   };
   constexpr double kRate = 10, kNoticed = 0.3;  // [Hz] [-]
   const double step = 2 * text_.number("readout.full_scale_deg_per_s") /
@@ -137,9 +132,8 @@ void Design::meet_noise(std::vector<std::string>& warnings) {
 void Design::set_noise() {
   constexpr double kFloor = 0.6643;  // least Allan deviation over B
   const auto walk = walk_of(sheet_);
-  // What the output of the base shows, with the noise of beam and amplifiers.
   const double own =
-      walk ? noise_figure(Device::parse(base_.text({}), "device")).value_or(0)
+      walk ? output_noise(gyro_of(base_.device())).angle_random_walk / kDegree
            : 0;
   if (own > 0)
     for (const char* other : {"noise.bias_instability_deg_per_s",

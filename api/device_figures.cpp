@@ -21,10 +21,10 @@ namespace {
 
 constexpr double kRoom = 25;  // [degC]
 
-double column_at(const Characteristic& found, const std::string& name) {
-  const auto column =
-      std::ranges::find(found.columns, name, &CharacteristicColumn::name);
-  return column->values.at(0);
+const std::vector<double>& values_of(const Characteristic& found,
+                                     const std::string& name) {
+  return std::ranges::find(found.columns, name, &CharacteristicColumn::name)
+      ->values;
 }
 
 Recording rest_hour(const Device& device, bool has_noise) {
@@ -43,8 +43,11 @@ Recording rest_hour(const Device& device, bool has_noise) {
 
 SteadyFigures steady_figures(const Device& device) {
   const Characteristic found = characterise(device, std::vector{kRoom});
-  return {column_at(found, "drive_frequency"), column_at(found, "split"),
-          column_at(found, "q_drive"), column_at(found, "drive_voltage")};
+  const auto at_room = [&](const char* name) {
+    return values_of(found, name).at(0);
+  };
+  return {at_room("drive_frequency"), at_room("split"), at_room("q_drive"),
+          at_room("drive_voltage")};
 }
 
 double bias_over(const Device& device, std::pair<double, double> range) {
@@ -54,9 +57,7 @@ double bias_over(const Device& device, std::pair<double, double> range) {
     temperatures.push_back(range.first +
                            (range.second - range.first) * k / kSteps);
   const Characteristic found = characterise(device, temperatures);
-  const auto bias = std::ranges::find(found.columns, std::string("bias"),
-                                      &CharacteristicColumn::name);
-  const auto [low, high] = std::ranges::minmax(bias->values);
+  const auto [low, high] = std::ranges::minmax(values_of(found, "bias"));
   return high - low;
 }
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "include/beamgyro/device.h"
+
 namespace beamgyro::internal {
 
 /// The text of a device file whose values are replaced one by one, each with a
@@ -31,6 +33,10 @@ class DeviceText {
 
   /// Returns the file, with these lines as comments at its begin.
   std::string text(const std::vector<std::string>& heading) const;
+  /// Returns the device that this file describes.
+  Device device(const std::vector<std::string>& heading = {}) const {
+    return Device::parse(text(heading), "device");
+  }
 
  private:
   struct Line {

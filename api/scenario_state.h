@@ -33,6 +33,11 @@ struct DeviceState {
   UnitGyro gyro = {};
 };
 
+/// The solved beam and trims of a device. Throws as make_gyro().
+inline const Gyro& gyro_of(const Device& device) {
+  return device.content().gyro.of(device.content().device);
+}
+
 struct ScenarioState {
   InputText scenario, device;
   std::vector<std::string> device_overrides, overrides;

@@ -241,7 +241,7 @@ void sdf_file(const SimulatorRequest& asked, const std::string& name,
         asked.devices.size(), asked.compensators.size()));
   const Device& device = asked.devices[0];
   const DeviceParameters& own = device.content().device;
-  const NoiseParameters shown = output_noise(device.content().gyro.of(own));
+  const NoiseParameters shown = output_noise(gyro_of(device));
   const double ambient = asked.options.temperature_degC.value_or(25);
   const RestCurve run = warm_up_run(device, ambient, result.warnings);
   const SdfNoise noise{
