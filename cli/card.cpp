@@ -22,10 +22,7 @@ int run_card(const CardArguments& arguments) {
   const Set set = Set::open(arguments.directory);
   std::optional<Progress> progress("reading " + arguments.directory);
   SetCardOptions options = arguments.options;
-  options.progress = [&](double share) {
-    progress->set_share(share);
-    return true;
-  };
+  options.progress = progress->shown_share();
   const std::vector<std::string> warnings = write_card(set, options);
   progress.reset();
   for (const std::string& warning : warnings)

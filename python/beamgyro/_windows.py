@@ -161,8 +161,7 @@ class Windows:
 
     def _row(self, row: int) -> tuple[Array, Array]:
         if self._process != os.getpid():  # forked: no handle of the parent's
-            from beamgyro._set import Set
-            self._set = Set(self._set.directory)
+            self._set = type(self._set)(self._set.directory)
             self._begin()
         found = self._decoded.get(row)
         if found is not None:

@@ -206,10 +206,6 @@ void require_rate(const ScenarioPlan& scenario, const Gyro& gyro) {
                   scenario.output_rate, drive / 4));
 }
 
-}  // namespace
-
-namespace {
-
 // Wall time [s] here and now of a second of the run with power.
 double measured_cost(const ScenarioPlan& scenario, const Gyro& gyro) {
   ScenarioPlan first = scenario;
