@@ -20,6 +20,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from beamgyro._analysis import allan, plan, sensitivity
+from beamgyro._campaign import Campaign
 from beamgyro._compensation import Compensator, compensate
 from beamgyro._core import version as __version__
 from beamgyro._curves import (HalfSplit, area_metric, characterise,
@@ -33,7 +34,7 @@ from beamgyro._many import run_many
 from beamgyro._results import (AllanResult, CurveFiguresResult, PlanResult,
                                SensitivityResult)
 from beamgyro._scenario import Scenario, run, run_to_file
-from beamgyro._set import Campaign, Set, generate, open_set
+from beamgyro._set import Set, generate, open_set
 from beamgyro._training import features, train, training_rows
 from beamgyro._validation import validate
 from beamgyro._validation_result import ValidationResult

@@ -8,12 +8,12 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 from beamgyro import _arguments, _checks, _core
+from beamgyro._campaign import Campaign, CampaignLike
 from beamgyro._compensation import Compensator, compensator_of
 from beamgyro._dataset import Path, recording_of
 from beamgyro._device import DeviceLike, device_of
 from beamgyro._progress import ProgressArgument, watched
 from beamgyro._results import AllanResult, PlanResult, SensitivityResult
-from beamgyro._set import Campaign, CampaignLike
 from beamgyro._warnings import warn
 
 if TYPE_CHECKING:

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 import numpy as np
 
 from beamgyro import _arguments, _checks, _core, _lazy
+from beamgyro._campaign import Campaign
 from beamgyro._device import Device, DeviceLike, Keys
 from beamgyro._progress import ProgressArgument, watched
 from beamgyro._results import CurveFiguresResult
-from beamgyro._set import Campaign
 from beamgyro._warnings import warn
 
 if TYPE_CHECKING:

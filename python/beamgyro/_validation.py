@@ -11,12 +11,13 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
 from beamgyro import _arguments, _checks, _core, _shipped, _toml
+from beamgyro._campaign import with_written_scenarios
 from beamgyro._compensation import Compensator, compensator_of
 from beamgyro._dataset import Path, recording_of
 from beamgyro._device import DeviceLike, device_of
 from beamgyro._own_metrics import own_metrics
 from beamgyro._progress import ProgressArgument, watched
-from beamgyro._set import Set, with_written_scenarios
+from beamgyro._set import Set
 from beamgyro._training import Runs, model_of, named_runs
 from beamgyro._validation_result import ValidationResult
 from beamgyro._warnings import warn
