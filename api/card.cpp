@@ -19,8 +19,8 @@
 namespace beamgyro {
 namespace {
 
-[[noreturn]] void refuse(std::string option, std::string value,
-                         std::string expected) {
+[[noreturn]] void refuse(const std::string& option, const std::string& value,
+                         const std::string& expected) {
   throw OptionError([=](const OptionSpelling& spelled) {
     return fmt::format("{}: expected {}", spelled(option, value), expected);
   });

@@ -217,8 +217,8 @@ std::vector<std::string> sdf_remarks(const Device& device,
                   "up: {:.4g} deg/s; left out is how it drifts with the "
                   "temperature and warms up",
                   ambient, noise.mean / kDegree),
-      "bias_mean is 0: Gazebo gives it a random sign. bias_stddev is the "
-      "turn-on offset",
+      std::string("bias_mean is 0: Gazebo gives it a random sign. bias_stddev "
+                  "is the turn-on offset"),
       fmt::format("dynamic_bias_stddev is a walk in rad/s/sqrt(s), no standard "
                   "deviation; it makes the turn-on offset fade over {:g} h",
                   noise.walk_correlation / 3600),

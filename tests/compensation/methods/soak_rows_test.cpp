@@ -72,9 +72,11 @@ TEST(SoakRows, ASoakThatSettlesIsNoRamp) {
   TrainingRows rows =
       rows_of({{0, 0, 0.0, 1.0, 27}}, [](double, int) { return 0.0; });
   for (Index k = 0; k < rows.size(); ++k) {
-    const auto soak = static_cast<double>(k / 9), minute = double(k % 9);
-    rows.time(k) = 60.0 * (30.0 * soak + minute);
-    rows.temperature(k) = 30.0 - 30.0 * soak - 3.7 * std::exp(-minute / 9.0);
+    const Index soak = k / 9;
+    const auto minute = static_cast<double>(k % 9);
+    rows.time(k) = 60.0 * (static_cast<double>(30 * soak) + minute);
+    rows.temperature(k) =
+        30.0 - static_cast<double>(30 * soak) - 3.7 * std::exp(-minute / 9.0);
   }
   const TrainingRows soaks = rows_of_soaks(rows, 0.2);
   for (const double last : {8.0, 38.0, 68.0}) {
