@@ -33,7 +33,8 @@ Device device_of(internal::LoadedDevice loaded, std::string name,
 }
 
 std::vector<SpuriousCrossing> crossings_of(
-    const internal::Gyro& gyro, std::span<const double> temperatures_degC) {
+    const internal::TrimmedGyro& gyro,
+    std::span<const double> temperatures_degC) {
   const auto [low, high] = std::ranges::minmax(temperatures_degC);
   std::vector<SpuriousCrossing> crossings;
   for (const internal::SpuriousBump& bump : internal::spurious_bumps(

@@ -92,7 +92,7 @@ ChamberTime time_of(const PlanOptions& options) {
 
 // Flicker is seen by a soak as the floor of its Allan deviation, white noise by
 // the fewest rows that a soak has.
-SlowNoise slow_noise(const Gyro& gyro) {
+SlowNoise slow_noise(const TrimmedGyro& gyro) {
   const NoiseParameters noise = output_noise(gyro);
   const double flicker = std::sqrt(2.0 * std::numbers::ln2 / std::numbers::pi) *
                          noise.bias_instability;
@@ -104,7 +104,7 @@ SlowNoise slow_noise(const Gyro& gyro) {
 
 // What the device's thermal model says of soaks and of the minutes after
 // power-on, and its noise.
-SoakBehaviour behaviour_of(const PlanOptions& options, const Gyro& gyro,
+SoakBehaviour behaviour_of(const PlanOptions& options, const TrimmedGyro& gyro,
                            const TemperatureRange& range,
                            const ChamberTime& time) {
   const DeviceParameters& device = gyro.device;

@@ -16,14 +16,14 @@ namespace beamgyro::internal {
 class UnitGyro {
  public:
   /// Throws as make_gyro(). Any thread may call it.
-  const Gyro& of(const DeviceParameters& device) const {
+  const TrimmedGyro& of(const DeviceParameters& device) const {
     std::call_once(once_, [&] { gyro_.emplace(make_gyro(device)); });
     return *gyro_;
   }
 
  private:
   mutable std::once_flag once_;
-  mutable std::optional<Gyro> gyro_;
+  mutable std::optional<TrimmedGyro> gyro_;
 };
 
 struct DeviceState {
@@ -34,7 +34,7 @@ struct DeviceState {
 };
 
 /// The solved beam and trims of a device. Throws as make_gyro().
-inline const Gyro& gyro_of(const Device& device) {
+inline const TrimmedGyro& gyro_of(const Device& device) {
   return device.content().gyro.of(device.content().device);
 }
 

@@ -90,7 +90,7 @@ class VariantSimulator {
  private:
   const internal::ScenarioState& base_;
   internal::ScenarioVariants input_;
-  std::optional<internal::Gyro> gyro_;
+  std::optional<internal::TrimmedGyro> gyro_;
   Strings overrides_;
 };
 

@@ -54,7 +54,7 @@ double seconds(int repetitions, const std::function<void()>& work) {
   return least;
 }
 
-json parameters(const Gyro& gyro) {
+json parameters(const TrimmedGyro& gyro) {
   const LoopElectronics loops = loop_electronics(gyro);
   const ThermalParameters& t = gyro.device.thermal;
   const DriveHeating heating = drive_heating(gyro);
@@ -125,7 +125,7 @@ Eigen::VectorXd probe(Eigen::Index size) {
   return y;
 }
 
-json envelope(const Gyro& gyro, const RateProfile& rate) {
+json envelope(const TrimmedGyro& gyro, const RateProfile& rate) {
   ScenarioPlan scenario;
   scenario.duration = 1500;
   scenario.output_rate = 10;
@@ -157,7 +157,7 @@ json envelope(const Gyro& gyro, const RateProfile& rate) {
           {"output", shown}};
 }
 
-json carrier(const Gyro& gyro) {
+json carrier(const TrimmedGyro& gyro) {
   constexpr double kEnd = 0.05, kStep = 5e-4;  // [s]
   CarrierOde ode(gyro);
   Eigen::VectorXd weights = Eigen::VectorXd::Ones(kCarrierStates);
@@ -192,7 +192,7 @@ json carrier(const Gyro& gyro) {
           {"probe_rate", list(dydt)}};
 }
 
-json envelope_probe(const Gyro& gyro) {
+json envelope_probe(const TrimmedGyro& gyro) {
   EnvelopeOde ode(gyro, drive_heating(gyro));
   Eigen::VectorXd y = probe(ode.size());
   y.tail<kThermalNodeCount>() << 299.3, 299.4, 299.8, 301.0, 304.0, 302.0;
@@ -210,7 +210,7 @@ json envelope_probe(const Gyro& gyro) {
 }
 
 int print_model(const std::string& file) {
-  const Gyro gyro = make_gyro(device_of(read_recording(file)));
+  const TrimmedGyro gyro = make_gyro(device_of(read_recording(file)));
   const SineSignal sine{.amplitude = 10 * kDegree, .frequency = 0.05};
   const json all = {
       {"parameters", parameters(gyro)},

@@ -23,7 +23,7 @@ BENCHMARK(project_and_trim_device)->Unit(benchmark::kMillisecond);
 
 // Materials, complex stiffness, couplings and the loop's root, uncached.
 void static_solve(benchmark::State& state) {
-  const Gyro gyro = make_gyro(shipped_device());
+  const TrimmedGyro gyro = make_gyro(shipped_device());
   double T = 233.15;
   for (auto _ : state) {
     benchmark::DoNotOptimize(beam_signal(gyro, T, {}));
@@ -36,7 +36,7 @@ BENCHMARK(static_solve)->Unit(benchmark::kMicrosecond);
 void prepare_device(benchmark::State& state) {
   const DeviceParameters device = shipped_device();
   for (auto _ : state) {
-    const Gyro gyro = make_gyro(device);
+    const TrimmedGyro gyro = make_gyro(device);
     benchmark::DoNotOptimize(StaticMap(gyro, 233.15, 328.15, 2.1));
   }
 }
@@ -46,7 +46,7 @@ BENCHMARK(prepare_device)->Unit(benchmark::kMillisecond);
 void characterise_401_temperatures(benchmark::State& state) {
   const DeviceParameters device = shipped_device();
   for (auto _ : state) {
-    const Gyro gyro = make_gyro(device);
+    const TrimmedGyro gyro = make_gyro(device);
     for (int i = 0; i < 401; ++i) {
       const double T = 233.15 + 0.25 * i;
       const ModalParameters modal = modal_at(gyro, T);
@@ -59,7 +59,7 @@ void characterise_401_temperatures(benchmark::State& state) {
 BENCHMARK(characterise_401_temperatures)->Unit(benchmark::kMillisecond);
 
 void build_static_map(benchmark::State& state) {
-  const Gyro gyro = make_gyro(shipped_device());
+  const TrimmedGyro gyro = make_gyro(shipped_device());
   for (auto _ : state)
     benchmark::DoNotOptimize(StaticMap(gyro, 233.15, 328.15, 2.1));
 }
@@ -67,7 +67,7 @@ BENCHMARK(build_static_map)->Unit(benchmark::kMillisecond);
 
 // A block of samples, as runs look them up.
 void look_up_static_map(benchmark::State& state) {
-  const Gyro gyro = make_gyro(shipped_device());
+  const TrimmedGyro gyro = make_gyro(shipped_device());
   const StaticMap map(gyro, 233.15, 328.15, 2.1);
   std::vector<double> T(256), rate(256, 1.3);
   for (std::size_t k = 0; k < T.size(); ++k)

@@ -43,7 +43,7 @@ double largest_difference(const std::vector<double>& a,
 // equations at a tight tolerance.
 void envelope(benchmark::State& state, const RateProfile& rate) {
   const ScenarioPlan scenario = warm_up(rate, 1500, 10);
-  const Gyro gyro = make_gyro(shipped_device());
+  const TrimmedGyro gyro = make_gyro(shipped_device());
   const Motion motion(scenario, gyro, {});
   const std::vector<double> times = sample_times(scenario);
   std::vector<double> output;

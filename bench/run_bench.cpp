@@ -39,7 +39,7 @@ void run_in_memory(benchmark::State& state, const RateProfile& rate) {
 
 // The same of a device that is at hand, as in the later runs of a set.
 void run_of_a_prepared_device(benchmark::State& state) {
-  const Gyro gyro = make_gyro(shipped_device());
+  const TrimmedGyro gyro = make_gyro(shipped_device());
   const ScenarioPlan scenario = warm_up(PiecewiseLinear::constant(0));
   for (auto _ : state) benchmark::DoNotOptimize(simulated(scenario, gyro));
   report_speed(state);

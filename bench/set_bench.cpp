@@ -35,7 +35,8 @@ const Hours& hours() {
   static const Hours all = [] {
     Hours made;
     for (std::uint32_t d = 0; d < kDevices; ++d) {
-      const Gyro gyro = make_gyro(made.campaign.device(d).device.value());
+      const TrimmedGyro gyro =
+          make_gyro(made.campaign.device(d).device.value());
       made.recordings.push_back(
           simulated(*made.campaign.run(0, d).scenario, gyro, {.device = d}));
       made.rows.emplace_back();
@@ -110,7 +111,7 @@ void hours_computed(benchmark::State& state) {
   const CampaignPlan& campaign = hours().campaign;
   for (auto _ : state) {
     for (std::uint32_t d = 0; d < kDevices; ++d) {
-      const Gyro gyro = make_gyro(campaign.device(d).device.value());
+      const TrimmedGyro gyro = make_gyro(campaign.device(d).device.value());
       benchmark::DoNotOptimize(
           simulated(*campaign.run(0, d).scenario, gyro, {.device = d}));
     }

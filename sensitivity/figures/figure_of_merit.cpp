@@ -19,14 +19,14 @@
 namespace beamgyro::internal {
 namespace {
 
-double bias_at(const Gyro& gyro, double beam, double board) {
+double bias_at(const TrimmedGyro& gyro, double beam, double board) {
   return electronics_at(gyro, board)
              .output(beam_signal(gyro, beam, {}).demodulated)
              .rate /
          kDegree;
 }
 
-NodeVector settled_temperatures(const Gyro& gyro, double ambient) {
+NodeVector settled_temperatures(const TrimmedGyro& gyro, double ambient) {
   const ThermalNetwork network(gyro.device.thermal);
   const DriveHeating heating = drive_heating(gyro);
   const NodeVector power =
@@ -142,14 +142,14 @@ class MeritsOf {
     return *curve_;
   }
 
-  Gyro gyro_;
+  TrimmedGyro gyro_;
   const MeritOptions& options_;
   std::optional<StaticCurve> curve_;
 };
 
 }  // namespace
 
-StaticCurve static_curve(const Gyro& gyro, const CurveGrid& grid) {
+StaticCurve static_curve(const TrimmedGyro& gyro, const CurveGrid& grid) {
   StaticCurve curve;
   curve.temperature = grid.temperatures();
   const Eigen::Index count = curve.temperature.size();
@@ -176,7 +176,8 @@ CurveLimits curve_limits(const StaticCurve& curve,
           (curve.bias.abs() > device.readout.full_scale / kDegree).any()};
 }
 
-Eigen::ArrayXd scale_factor_curve(const Gyro& gyro, const CurveGrid& grid) {
+Eigen::ArrayXd scale_factor_curve(const TrimmedGyro& gyro,
+                                  const CurveGrid& grid) {
   Eigen::ArrayXd slope = grid.temperatures();
   for (double& value : slope) {
     const double T = value + kZeroCelsius;
@@ -185,7 +186,7 @@ Eigen::ArrayXd scale_factor_curve(const Gyro& gyro, const CurveGrid& grid) {
   return slope;
 }
 
-double warm_up_change(const Gyro& gyro, double ambient) {
+double warm_up_change(const TrimmedGyro& gyro, double ambient) {
   const double T = ambient + kZeroCelsius;
   const NodeVector settled = settled_temperatures(gyro, T);
   return bias_at(gyro, settled(kBeam), settled(kBoard)) - bias_at(gyro, T, T);

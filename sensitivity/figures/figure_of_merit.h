@@ -35,18 +35,19 @@ struct StaticCurve {
 };
 
 /// Throws SimulationFailure where the drive loop does not lock.
-StaticCurve static_curve(const Gyro& gyro, const CurveGrid& grid);
+StaticCurve static_curve(const TrimmedGyro& gyro, const CurveGrid& grid);
 
 /// Returns the scale factor relative to that at T_0 at each temperature of the
 /// grid (rate_slope()). Throws as static_curve().
-Eigen::ArrayXd scale_factor_curve(const Gyro& gyro, const CurveGrid& grid);
+Eigen::ArrayXd scale_factor_curve(const TrimmedGyro& gyro,
+                                  const CurveGrid& grid);
 
 /// Returns the bias [deg/s] of the settled gyro at `ambient` [degC] in still
 /// air less that at power-on, when every part is at ambient: the change of an
 /// hour's warm-up by self-heating. With an oven it holds the mount at its set
 /// point then. Throws as static_curve(), and when the temperatures do not
 /// settle.
-double warm_up_change(const Gyro& gyro, double ambient);
+double warm_up_change(const TrimmedGyro& gyro, double ambient);
 
 /// Returns what is left of the bias [deg/s] at each temperature of `curve` when
 /// `compensator` works on a gyro that has settled there: its low-passes have

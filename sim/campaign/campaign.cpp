@@ -103,14 +103,14 @@ void add_moving(const ScenarioPlan& scenario, PerAxis<bool>& axes) {
 
 }  // namespace
 
-void set_as_built(const Trims& trims, const Gyro& base,
+void set_as_built(const Trims& trims, const TrimmedGyro& base,
                   DeviceParameters& device) {
   ReadoutParameters& readout = device.readout;
   if (!trims.quadrature)
     readout.quadrature_trim = built_quadrature(device, base.stiffness_trim);
   if (trims.scale_factor && trims.offset) return;
   if (!trims.scale_factor) readout.scale_factor_error = 0;
-  const Gyro gyro = make_gyro(device);
+  const TrimmedGyro gyro = make_gyro(device);
   double gain = 1;
   if (!trims.scale_factor) {
     gain = std::abs(gyro.rate_axis) / std::abs(base.rate_axis);

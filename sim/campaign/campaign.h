@@ -42,7 +42,7 @@ struct Trims {
 /// - its scale factor under the base unit's gain;
 /// - its output at T_0 and rest under the base unit's offset.
 /// Throws SimulationFailure when the drive loop does not lock.
-void set_as_built(const Trims& trims, const Gyro& base,
+void set_as_built(const Trims& trims, const TrimmedGyro& base,
                   DeviceParameters& device);
 
 /// Returns the axes that some device may move: those of the scenario itself,
@@ -125,8 +125,8 @@ struct CampaignPlan {
   ProfileTables profiles;  // of the scenarios, as they were read
   std::optional<ConfigDocument> device_document;
   DeviceParameters base_device;
-  std::optional<Gyro> base_gyro;  // where a trim is left out
-  DrawPlan device_plan;           // what is drawn: keys, distributions, groups
+  std::optional<TrimmedGyro> base_gyro;  // where a trim is left out
+  DrawPlan device_plan;  // what is drawn: keys, distributions, groups
   std::vector<CampaignRun> runs;
 };
 

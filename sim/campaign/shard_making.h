@@ -52,7 +52,7 @@ class ShardMaker {
  private:
   struct PreparedDevice {
     VirtualDevice drawn;
-    std::optional<Gyro> gyro;
+    std::optional<TrimmedGyro> gyro;
     DeviceRow row;  // its failure, if there is no gyro
   };
   void prepare(std::uint32_t range);

@@ -44,7 +44,8 @@ Distribution read_of_mode(const ConfigTable& table, std::string_view key) {
 
 }  // namespace
 
-Draw read_spurious_population(const ConfigTable& root, const Gyro& base) {
+Draw read_spurious_population(const ConfigTable& root,
+                              const TrimmedGyro& base) {
   const ConfigTable table = root.table("spurious_modes");
   SpuriousPopulation population;
   read_count(table, population);

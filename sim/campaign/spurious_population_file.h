@@ -12,6 +12,6 @@ namespace beamgyro::internal {
 /// Heights become couplings with the drive frequency and the angular gain of
 /// the base unit. Throws std::invalid_argument naming file, line, key and
 /// value.
-Draw read_spurious_population(const ConfigTable& root, const Gyro& base);
+Draw read_spurious_population(const ConfigTable& root, const TrimmedGyro& base);
 
 }  // namespace beamgyro::internal

@@ -13,7 +13,8 @@ using Eigen::Vector2d;
 
 }  // namespace
 
-CarrierOde::CarrierOde(const Gyro& gyro) : LoopedBeam(gyro), spurious_(gyro) {
+CarrierOde::CarrierOde(const TrimmedGyro& gyro)
+    : LoopedBeam(gyro), spurious_(gyro) {
   set_temperatures(kCalibrationTemperature, kCalibrationTemperature);
 }
 

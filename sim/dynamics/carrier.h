@@ -26,7 +26,7 @@ enum CarrierState {
 /// the phase exact over hours. Not safe for use by two threads at once.
 class CarrierOde : public LoopedBeam {
  public:
-  explicit CarrierOde(const Gyro& gyro);
+  explicit CarrierOde(const TrimmedGyro& gyro);
 
   /// [K]; `memory` is what a unit with memory adds to its coefficients. The
   /// housing is as warm as the beam, and spurious modes have no memory.

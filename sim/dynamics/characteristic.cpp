@@ -33,7 +33,7 @@ constexpr std::array<CharacteristicQuantity, kCharacteristicQuantities>
 
 constexpr std::size_t kBias = 0, kDriveVoltage = 7;  // of kQuantities
 
-CharacteristicRow row_at(const Gyro& gyro, double celsius) {
+CharacteristicRow row_at(const TrimmedGyro& gyro, double celsius) {
   const double T = celsius + kZeroCelsius;
   const ModalParameters modal = modal_at(gyro, T);
   const BeamSignal signal = beam_signal(gyro, modal, {});
@@ -61,7 +61,7 @@ characteristic_quantities() {
 }
 
 std::vector<CharacteristicRow> characteristic(
-    const Gyro& gyro, std::span<const double> temperatures) {
+    const TrimmedGyro& gyro, std::span<const double> temperatures) {
   std::vector<CharacteristicRow> rows;
   for (const double celsius : temperatures)
     rows.push_back(row_at(gyro, celsius));

@@ -31,7 +31,7 @@ using CharacteristicRow = std::array<double, kCharacteristicQuantities>;
 /// Returns the static characteristic of a gyro at rest, free of noise, for each
 /// beam temperature [degC].
 std::vector<CharacteristicRow> characteristic(
-    const Gyro& gyro, std::span<const double> temperatures);
+    const TrimmedGyro& gyro, std::span<const double> temperatures);
 
 /// Temperatures at which a gyro does not work as it should.
 struct CharacteristicLimits {

@@ -9,7 +9,7 @@
 
 namespace beamgyro::internal {
 
-DriveNoiseTable::DriveNoiseTable(const Gyro& gyro, double coldest,
+DriveNoiseTable::DriveNoiseTable(const TrimmedGyro& gyro, double coldest,
                                  double hottest, double rate)
     : coldest_(coldest) {
   constexpr double kWidest = 4;  // [K]

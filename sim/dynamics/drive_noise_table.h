@@ -16,7 +16,7 @@ class DriveNoiseTable {
  public:
   /// Tabulates beam temperatures from `coldest` to `hottest` [K], for samples
   /// at `rate` [Hz]. Throws as loop_noise().
-  DriveNoiseTable(const Gyro& gyro, double coldest, double hottest,
+  DriveNoiseTable(const TrimmedGyro& gyro, double coldest, double hottest,
                   double rate);
 
   /// Returns sigma (frequency, voltage) of a sample with the beam at `beam`

@@ -66,7 +66,7 @@ Vector2cd EnvelopePlant::first_order_by(const Matrix2d& stiffness,
   return -r_ * (velocity * v + by_S);
 }
 
-LoopedBeam::LoopedBeam(const Gyro& gyro)
+LoopedBeam::LoopedBeam(const TrimmedGyro& gyro)
     : loops_(loop_electronics(gyro)),
       table_(gyro),
       phase_tc_(gyro.device.readout.phase_tc),
@@ -110,7 +110,7 @@ void LoopedBeam::put_loop_rates(const DriveSignals& drive, Complex U_F,
   put(dydt, kRebalance, loops_.rebalance ? r2 : Complex(0));
 }
 
-EnvelopeOde::EnvelopeOde(const Gyro& gyro, const DriveHeating& heating,
+EnvelopeOde::EnvelopeOde(const TrimmedGyro& gyro, const DriveHeating& heating,
                          const ModalMemory* memory)
     : LoopedBeam(gyro),
       spurious_(gyro),

@@ -82,7 +82,7 @@ enum EnvelopeState {
 /// it.
 class LoopedBeam {
  public:
-  explicit LoopedBeam(const Gyro& gyro);
+  explicit LoopedBeam(const TrimmedGyro& gyro);
 
   const LoopElectronics& loops() const { return loops_; }
 
@@ -154,7 +154,7 @@ struct EnvelopeInputs {
 class EnvelopeOde : public LoopedBeam {
  public:
   /// `memory`, which must outlive the object, is null for a unit without.
-  EnvelopeOde(const Gyro& gyro, const DriveHeating& heating,
+  EnvelopeOde(const TrimmedGyro& gyro, const DriveHeating& heating,
               const ModalMemory* memory = nullptr);
 
   Eigen::Index size() const { return first_spurious() + 2 * spurious_.count(); }

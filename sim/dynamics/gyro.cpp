@@ -14,14 +14,14 @@ namespace {
 
 constexpr double kPathStep = 1;  // [K], of LockPath
 
-StaticSolution lock_near(const Gyro& gyro, const ModalParameters& modal,
+StaticSolution lock_near(const TrimmedGyro& gyro, const ModalParameters& modal,
                          const CaseMotion& motion, double guess) {
   return static_solution(modal, gyro.loop, gyro.device.readout.feedthrough,
                          motion, guess);
 }
 
 // The frequency of the lock nearest to `guess`, or 0 where there is none.
-double frequency_near(const Gyro& gyro, const ModalParameters& modal,
+double frequency_near(const TrimmedGyro& gyro, const ModalParameters& modal,
                       double guess) {
   try {
     return lock_near(gyro, modal, {}, guess).drive_frequency;
@@ -32,7 +32,8 @@ double frequency_near(const Gyro& gyro, const ModalParameters& modal,
 
 // The lock at `to` [K] that continues `frequency` at `from`, or 0. Two locks
 // are half widths apart; what moves by less in one step is the same one.
-double followed(const Gyro& gyro, double from, double frequency, double to) {
+double followed(const TrimmedGyro& gyro, double from, double frequency,
+                double to) {
   constexpr double kSmallestStep = 1e-3;  // [K]
   if (frequency == 0 || from == to) return frequency;
   const ModalParameters modal = modal_at(gyro, to);
@@ -44,13 +45,13 @@ double followed(const Gyro& gyro, double from, double frequency, double to) {
   return followed(gyro, middle, followed(gyro, from, frequency, middle), to);
 }
 
-Complex signal(const Gyro& gyro, const ModalParameters& modal,
+Complex signal(const TrimmedGyro& gyro, const ModalParameters& modal,
                const CaseMotion& motion) {
   return static_solution(gyro, modal, motion).signal;
 }
 
-Gyro untrimmed_two_modes(const DeviceParameters& device) {
-  Gyro gyro;
+TrimmedGyro untrimmed_two_modes(const DeviceParameters& device) {
+  TrimmedGyro gyro;
   gyro.device = device;
   gyro.beam = project_beam(device);
   const Eigen::Vector2cd feedback =
@@ -63,7 +64,7 @@ Gyro untrimmed_two_modes(const DeviceParameters& device) {
 
 // The quadrature is linear in k_trim up to the shift of w_d: a secant from the
 // closed-form slope 1/(2 m g w_d) of (2.22) converges in two or three steps.
-double trimmed_stiffness(const Gyro& gyro) {
+double trimmed_stiffness(const TrimmedGyro& gyro) {
   constexpr int kMaxIterations = 20;
   constexpr double kTolerance = 1e-9;  // [rad/s], 6e-8 deg/s
   const double target = gyro.device.readout.quadrature_trim;
@@ -102,10 +103,10 @@ void require_one_lock(const SpuriousModeParameters& mode, double Q_x) {
       std::min(std::sqrt(kMostLoss * eta / Q_x), eta)));
 }
 
-Gyro untrimmed_gyro(const DeviceParameters& device) {
-  Gyro gyro = untrimmed_two_modes(device);
+TrimmedGyro untrimmed_gyro(const DeviceParameters& device) {
+  TrimmedGyro gyro = untrimmed_two_modes(device);
   if (device.spurious_modes.empty()) return gyro;
-  Gyro without = gyro;
+  TrimmedGyro without = gyro;
   without.device.spurious_modes.clear();
   without.stiffness_trim = trimmed_stiffness(without);
   const ModalParameters modal = modal_at(without, kCalibrationTemperature);
@@ -119,13 +120,14 @@ Gyro untrimmed_gyro(const DeviceParameters& device) {
 // The modulator's reference is the drive mode's velocity: V_B per rate is
 // 2 i w_d m_g X / Theta_By (2.5). Taken there, and not from dV_B/dOmega, the
 // quadrature does not leak into the bias by the products of two misalignments.
-Complex rebalance_reference(const Gyro& gyro, const ModalParameters& modal) {
+Complex rebalance_reference(const TrimmedGyro& gyro,
+                            const ModalParameters& modal) {
   const StaticSolution s = static_solution(gyro, modal, {});
   return Complex(0, 1) * s.amplitude(0) / modal.coupling[kDamping](1);
 }
 
 // Sets the trims and references of an untrimmed unit.
-Gyro trimmed(Gyro gyro) {
+TrimmedGyro trimmed(TrimmedGyro gyro) {
   const ReadoutParameters& readout = gyro.device.readout;
   gyro.stiffness_trim = trimmed_stiffness(gyro);
   const ModalParameters modal = modal_at(gyro, kCalibrationTemperature);
@@ -142,7 +144,7 @@ Gyro trimmed(Gyro gyro) {
 
 }  // namespace
 
-double LockPath::at(const Gyro& gyro, double T) {
+double LockPath::at(const TrimmedGyro& gyro, double T) {
   const bool is_colder = T < kCalibrationTemperature;
   std::vector<double>& path = is_colder ? colder_ : warmer_;
   const auto temperature = [&](std::size_t k) {
@@ -163,7 +165,8 @@ double LockPath::at(const Gyro& gyro, double T) {
   return followed(gyro, temperature(last), path[last], T);
 }
 
-StaticSolution static_solution(const Gyro& gyro, const ModalParameters& modal,
+StaticSolution static_solution(const TrimmedGyro& gyro,
+                               const ModalParameters& modal,
                                const CaseMotion& motion, LockPath& path,
                                double guess) {
   const StaticSolution solution = lock_near(gyro, modal, motion, guess);
@@ -174,18 +177,19 @@ StaticSolution static_solution(const Gyro& gyro, const ModalParameters& modal,
   return continued > 0 ? lock_near(gyro, modal, motion, continued) : solution;
 }
 
-StaticSolution static_solution(const Gyro& gyro, const ModalParameters& modal,
+StaticSolution static_solution(const TrimmedGyro& gyro,
+                               const ModalParameters& modal,
                                const CaseMotion& motion, double guess) {
   LockPath path;
   return static_solution(gyro, modal, motion, path, guess);
 }
 
-ModalParameters modal_at(const Gyro& gyro, double T,
+ModalParameters modal_at(const TrimmedGyro& gyro, double T,
                          const MemoryState& memory) {
   return modal_at(gyro, SpuriousTemperatures{T, T}, memory);
 }
 
-ModalParameters modal_at(const Gyro& gyro,
+ModalParameters modal_at(const TrimmedGyro& gyro,
                          const SpuriousTemperatures& temperatures,
                          const MemoryState& memory) {
   ModalParameters modal = modal_parameters(
@@ -194,7 +198,7 @@ ModalParameters modal_at(const Gyro& gyro,
   return modal;
 }
 
-void add_spurious_modes(const Gyro& gyro,
+void add_spurious_modes(const TrimmedGyro& gyro,
                         const SpuriousTemperatures& temperatures,
                         const MemoryState& memory, ModalParameters& modal) {
   if (gyro.spurious_reference == 0) return;
@@ -203,7 +207,7 @@ void add_spurious_modes(const Gyro& gyro,
                           gyro.beam.mass, temperatures, memory);
 }
 
-Complex rate_response(const Gyro& gyro, const ModalParameters& modal) {
+Complex rate_response(const TrimmedGyro& gyro, const ModalParameters& modal) {
   constexpr double kStep = 0.1;  // [rad/s]; cubic term 1e-8 of the slope
   const auto at = [&](double z) {
     CaseMotion motion;
@@ -213,18 +217,18 @@ Complex rate_response(const Gyro& gyro, const ModalParameters& modal) {
   return (at(kStep) - at(-kStep)) / (2 * kStep);
 }
 
-Complex zero_rate_terms(const Gyro& gyro, const ModalParameters& modal) {
+Complex zero_rate_terms(const TrimmedGyro& gyro, const ModalParameters& modal) {
   return signal(gyro, modal, {}) / rate_response(gyro, modal);
 }
 
-Gyro make_gyro(const DeviceParameters& device) {
-  Gyro gyro = untrimmed_gyro(device);
+TrimmedGyro make_gyro(const DeviceParameters& device) {
+  TrimmedGyro gyro = untrimmed_gyro(device);
   require_passive_memory(device, gyro.beam);
   return trimmed(std::move(gyro));
 }
 
-Gyro without_spurious_modes(const Gyro& gyro) {
-  Gyro without = gyro;
+TrimmedGyro without_spurious_modes(const TrimmedGyro& gyro) {
+  TrimmedGyro without = gyro;
   without.device.spurious_modes.clear();
   without.spurious_reference = 0;
   without.stiffness_trim = 0;
@@ -232,22 +236,23 @@ Gyro without_spurious_modes(const Gyro& gyro) {
 }
 
 double built_quadrature(const DeviceParameters& device, double stiffness_trim) {
-  Gyro gyro = untrimmed_gyro(device);
+  TrimmedGyro gyro = untrimmed_gyro(device);
   gyro.stiffness_trim = stiffness_trim;
   return -zero_rate_terms(gyro, modal_at(gyro, kCalibrationTemperature)).imag();
 }
 
-BeamSignal beam_signal(const Gyro& gyro, double T, const CaseMotion& motion) {
+BeamSignal beam_signal(const TrimmedGyro& gyro, double T,
+                       const CaseMotion& motion) {
   return beam_signal(gyro, modal_at(gyro, T), motion);
 }
 
-BeamSignal beam_signal(const Gyro& gyro, const ModalParameters& modal,
+BeamSignal beam_signal(const TrimmedGyro& gyro, const ModalParameters& modal,
                        const CaseMotion& motion) {
   LockPath path;
   return beam_signal(gyro, modal, motion, path);
 }
 
-BeamSignal beam_signal(const Gyro& gyro, const ModalParameters& modal,
+BeamSignal beam_signal(const TrimmedGyro& gyro, const ModalParameters& modal,
                        const CaseMotion& motion, LockPath& path, double guess) {
   const StaticSolution solution =
       static_solution(gyro, modal, motion, path, guess);
@@ -255,7 +260,7 @@ BeamSignal beam_signal(const Gyro& gyro, const ModalParameters& modal,
           solution.drive_voltage, solution.amplitude_locked};
 }
 
-DriveHeating drive_heating(const Gyro& gyro) {
+DriveHeating drive_heating(const TrimmedGyro& gyro) {
   const ModalParameters modal = modal_at(gyro, kCalibrationTemperature);
   const BeamSignal signal = beam_signal(gyro, modal, {});
   const double w = signal.drive_frequency, V = signal.drive_voltage;
@@ -277,13 +282,14 @@ double in_phase_rate(const MountParameters& mount,
   return b[0] * a[0] + b[1] * a[1] + b[2] * a[2] + mount.rectification * square;
 }
 
-double rate_slope(const Gyro& gyro, const ModalParameters& modal, double T) {
+double rate_slope(const TrimmedGyro& gyro, const ModalParameters& modal,
+                  double T) {
   const Complex slope = rate_response(gyro, modal) / gyro.rate_axis;
   return (slope * electronics_at(gyro, T).turn).real() /
          (1 + gyro.device.readout.scale_factor_error);
 }
 
-Electronics electronics_at(const Gyro& gyro, double board_temperature) {
+Electronics electronics_at(const TrimmedGyro& gyro, double board_temperature) {
   const ReadoutParameters& readout = gyro.device.readout;
   const double dT = board_temperature - kCalibrationTemperature;
   return {std::polar(1.0, (readout.phase_tc + readout.phase_tc2 * dT) * dT),

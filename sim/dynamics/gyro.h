@@ -12,7 +12,7 @@ namespace beamgyro::internal {
 
 /// One unit after the factory: the device, its projected beam, and the trims
 /// and references that are set once with board and beam at T_0 (2.4, 2.6).
-struct Gyro {
+struct TrimmedGyro {
   DeviceParameters device;
   ProjectedBeam beam;
   double stiffness_trim = 0;  // k_trim [N/m]
@@ -29,17 +29,17 @@ struct Gyro {
 
 /// Returns modal_parameters() of the trimmed unit, with its spurious modes and
 /// the housing as warm as the beam.
-ModalParameters modal_at(const Gyro& gyro, double T,
+ModalParameters modal_at(const TrimmedGyro& gyro, double T,
                          const MemoryState& memory = {});
 
 /// The same with the housing at its own temperature [K], which matters to
 /// spurious modes that follow it.
-ModalParameters modal_at(const Gyro& gyro,
+ModalParameters modal_at(const TrimmedGyro& gyro,
                          const SpuriousTemperatures& temperatures,
                          const MemoryState& memory = {});
 
 /// Writes the spurious modes of a gyro at these temperatures to `modal`.
-void add_spurious_modes(const Gyro& gyro,
+void add_spurious_modes(const TrimmedGyro& gyro,
                         const SpuriousTemperatures& temperatures,
                         const MemoryState& memory, ModalParameters& modal);
 
@@ -51,7 +51,7 @@ class LockPath {
  public:
   /// Returns w_d [rad/s] at beam temperature `T` [K], or 0 when the lock of T_0
   /// ends before T.
-  double at(const Gyro& gyro, double T);
+  double at(const TrimmedGyro& gyro, double T);
 
  private:
   std::vector<double> colder_, warmer_;  // at T_0 -+ k steps; 0: ended
@@ -61,10 +61,12 @@ class LockPath {
 /// one nearest to `guess` [rad/s]. If `guess` is 0 it takes the one that
 /// continues the lock at T_0 according to `path`, or where none does, the one
 /// with the lowest voltage.
-StaticSolution static_solution(const Gyro& gyro, const ModalParameters& modal,
+StaticSolution static_solution(const TrimmedGyro& gyro,
+                               const ModalParameters& modal,
                                const CaseMotion& motion, LockPath& path,
                                double guess = 0);
-StaticSolution static_solution(const Gyro& gyro, const ModalParameters& modal,
+StaticSolution static_solution(const TrimmedGyro& gyro,
+                               const ModalParameters& modal,
                                const CaseMotion& motion, double guess = 0);
 
 /// Solves the beam and sets the trims at T_0:
@@ -75,11 +77,11 @@ StaticSolution static_solution(const Gyro& gyro, const ModalParameters& modal,
 /// when the drive loop cannot lock at T_0, and for a spurious mode that would
 /// give it a second lock: e_x^2 Q_x/eta_s from 0.3, or |e_x| from eta_s (with
 /// Q_x at T_0).
-Gyro make_gyro(const DeviceParameters& device);
+TrimmedGyro make_gyro(const DeviceParameters& device);
 
 /// Returns the unit as the factory would have trimmed it without its spurious
 /// modes.
-Gyro without_spurious_modes(const Gyro& gyro);
+TrimmedGyro without_spurious_modes(const TrimmedGyro& gyro);
 
 /// Returns the input-referred quadrature at T_0 [rad/s] when k_trim is
 /// `stiffness_trim` [N/m] in place of the value trimmed for this unit. Throws
@@ -100,10 +102,11 @@ struct BeamSignal {
 /// Solves the static response (2.10) at beam temperature T [K] exactly. `path`
 /// is the LockPath of this gyro; `path` and `guess` are as in
 /// static_solution().
-BeamSignal beam_signal(const Gyro& gyro, double T, const CaseMotion& motion);
-BeamSignal beam_signal(const Gyro& gyro, const ModalParameters& modal,
+BeamSignal beam_signal(const TrimmedGyro& gyro, double T,
                        const CaseMotion& motion);
-BeamSignal beam_signal(const Gyro& gyro, const ModalParameters& modal,
+BeamSignal beam_signal(const TrimmedGyro& gyro, const ModalParameters& modal,
+                       const CaseMotion& motion);
+BeamSignal beam_signal(const TrimmedGyro& gyro, const ModalParameters& modal,
                        const CaseMotion& motion, LockPath& path,
                        double guess = 0);
 
@@ -125,24 +128,25 @@ struct Electronics {
     return {turned.real() + offset, -turned.imag()};
   }
 };
-Electronics electronics_at(const Gyro& gyro, double board_temperature);
+Electronics electronics_at(const TrimmedGyro& gyro, double board_temperature);
 
 /// Returns the input-referred zero-rate terms B_0 - i Q_0 = r/(dr/dOmega) at
 /// rate 0 [rad/s], from the exact solution at one temperature.
-std::complex<double> zero_rate_terms(const Gyro& gyro,
+std::complex<double> zero_rate_terms(const TrimmedGyro& gyro,
                                      const ModalParameters& modal);
 
 /// Returns the scale factor relative to that at T_0: the slope of the output
 /// over rate at rate 0, with board and beam at T [K], divided by the slope at
 /// T_0.
-double rate_slope(const Gyro& gyro, const ModalParameters& modal, double T);
+double rate_slope(const TrimmedGyro& gyro, const ModalParameters& modal,
+                  double T);
 
 /// Heat that the drive dissipates at T_0 [W]: 1/2 c w^2 A^2 in the beam and 1/2
 /// w C V^2 tan(delta) in the driven patch.
 struct DriveHeating {
   double mechanical, dielectric;
 };
-DriveHeating drive_heating(const Gyro& gyro);
+DriveHeating drive_heating(const TrimmedGyro& gyro);
 
 /// Returns what an acceleration a [m/s2] of the case adds to the in-phase term,
 /// b_g . a + r |a|^2 [rad/s] (2.1).
@@ -155,7 +159,7 @@ double in_phase_rate(const MountParameters& mount,
 
 /// Returns d signal / dOmega at rate 0, in the unit of rate_axis: a central
 /// difference of the exact solution, which is exact for its quadratic part.
-std::complex<double> rate_response(const Gyro& gyro,
+std::complex<double> rate_response(const TrimmedGyro& gyro,
                                    const ModalParameters& modal);
 
 }  // namespace beamgyro::internal

@@ -24,7 +24,7 @@ void set_rebalance(const ModalParameters& modal, double omega,
 
 }  // namespace
 
-LoopElectronics loop_electronics(const Gyro& gyro) {
+LoopElectronics loop_electronics(const TrimmedGyro& gyro) {
   const ModalParameters modal = modal_at(gyro, kCalibrationTemperature);
   const StaticSolution solution = static_solution(gyro, modal, {});
   const DriveParameters& drive = gyro.device.drive;

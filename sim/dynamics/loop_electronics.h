@@ -60,7 +60,7 @@ struct LoopElectronics {
 inline constexpr double kDetectionStart = 0.005;  // of the set amplitude
 inline constexpr double kDetectionEnd = 0.02;
 
-LoopElectronics loop_electronics(const Gyro& gyro);
+LoopElectronics loop_electronics(const TrimmedGyro& gyro);
 
 /// g(a) and dg/da.
 struct Detection {

@@ -25,7 +25,7 @@ Eigen::Matrix<double, 2, 4> real_row(const Vector2cd& row) {
 
 }  // namespace
 
-Eigen::VectorXd settled_state(const Gyro& gyro, const EnvelopeOde& ode,
+Eigen::VectorXd settled_state(const TrimmedGyro& gyro, const EnvelopeOde& ode,
                               const CaseMotion& motion, double T_beam,
                               double T_board) {
   const ModalParameters modal = modal_at(gyro, T_beam);
@@ -67,7 +67,7 @@ Eigen::VectorXd settled_state(const Gyro& gyro, const EnvelopeOde& ode,
   return y;
 }
 
-NoiseSystem loop_noise(const Gyro& gyro, EnvelopeOde& ode, double T_beam,
+NoiseSystem loop_noise(const TrimmedGyro& gyro, EnvelopeOde& ode, double T_beam,
                        double T_board) {
   const LoopElectronics& loops = ode.loops();
   const Eigen::VectorXd y = settled_state(gyro, ode, {}, T_beam, T_board);

@@ -11,7 +11,7 @@ inline constexpr double kNoiseRefresh = 2.0;
 
 /// Returns the steady state of amplitudes, loops and filters with the beam at
 /// `T_beam` and the board at `T_board` [K]. Throws as static_solution().
-Eigen::VectorXd settled_state(const Gyro& gyro, const EnvelopeOde& ode,
+Eigen::VectorXd settled_state(const TrimmedGyro& gyro, const EnvelopeOde& ode,
                               const CaseMotion& motion, double T_beam,
                               double T_board);
 
@@ -20,7 +20,7 @@ Eigen::VectorXd settled_state(const Gyro& gyro, const EnvelopeOde& ode,
 /// its steady state at rest. States have the indices of EnvelopeState, without
 /// kRebalance in open loop. State kOutput2 is the noise of the output [rad/s],
 /// kOutput2 + 1 is minus that of the quadrature.
-NoiseSystem loop_noise(const Gyro& gyro, EnvelopeOde& ode, double T_beam,
+NoiseSystem loop_noise(const TrimmedGyro& gyro, EnvelopeOde& ode, double T_beam,
                        double T_board);
 
 /// Returns what the drive loop shows of the state z of loop_noise(), the rows

@@ -72,7 +72,7 @@ struct Held {
 // V_D, w_d and, with force rebalance, Re V_B, Im V_B.
 class LoopedResponse {
  public:
-  LoopedResponse(const Gyro& gyro, const ModalParameters& modal,
+  LoopedResponse(const TrimmedGyro& gyro, const ModalParameters& modal,
                  const StaticSolution& s)
       : modal_(modal),
         feedback_(charge_of(modal.coupling[kFeedback], s.amplitude)),
@@ -171,7 +171,8 @@ double RateNoiseDensity::total() const {
                    amplifier * amplifier);
 }
 
-RateNoiseDensity low_frequency_noise(const Gyro& gyro, double beam_temperature,
+RateNoiseDensity low_frequency_noise(const TrimmedGyro& gyro,
+                                     double beam_temperature,
                                      double board_temperature) {
   require_positive(beam_temperature, "noise: beam temperature", "K");
   const ModalParameters modal = modal_at(gyro, beam_temperature);
@@ -201,14 +202,14 @@ RateNoiseDensity low_frequency_noise(const Gyro& gyro, double beam_temperature,
           std::sqrt(charge * density.amplifier)};
 }
 
-double sensing_angle_random_walk(const Gyro& gyro) {
+double sensing_angle_random_walk(const TrimmedGyro& gyro) {
   return low_frequency_noise(gyro, kCalibrationTemperature,
                              kCalibrationTemperature)
              .total() /
          std::numbers::sqrt2;
 }
 
-NoiseParameters output_noise(const Gyro& gyro) {
+NoiseParameters output_noise(const TrimmedGyro& gyro) {
   return with_white_noise(gyro.device.noise, sensing_angle_random_walk(gyro));
 }
 

@@ -73,15 +73,16 @@ struct RateNoiseDensity {
 /// stands at its limit, the amplitude of the feedback are held; with force
 /// rebalance the readout's charge is. At rest, beam and board at temperatures
 /// [K]. Throws as noise_densities() and static_solution().
-RateNoiseDensity low_frequency_noise(const Gyro& gyro, double beam_temperature,
+RateNoiseDensity low_frequency_noise(const TrimmedGyro& gyro,
+                                     double beam_temperature,
                                      double board_temperature);
 
 /// Returns the white noise of the sensing in front of the output stage at T_0,
 /// as an angle random walk N [rad/sqrt(s)].
-double sensing_angle_random_walk(const Gyro& gyro);
+double sensing_angle_random_walk(const TrimmedGyro& gyro);
 
 /// Returns the noise that the output of a gyro shows: that of its output stage,
 /// with that of the sensing in its white noise.
-NoiseParameters output_noise(const Gyro& gyro);
+NoiseParameters output_noise(const TrimmedGyro& gyro);
 
 }  // namespace beamgyro::internal

@@ -30,7 +30,7 @@ Complex coupling_of(const ModalChannels& channels, Patch patch) {
   return {channels(i), channels(i + 1)};
 }
 
-ModalTable::ModalTable(const Gyro& gyro) : gyro_(gyro) {
+ModalTable::ModalTable(const TrimmedGyro& gyro) : gyro_(gyro) {
   for (std::size_t p = 0; p < direction_.size(); ++p) {
     direction_[p] =
         patch_position(gyro.device, static_cast<Patch>(p)).normalized();
@@ -40,7 +40,7 @@ ModalTable::ModalTable(const Gyro& gyro) : gyro_(gyro) {
   cells_.resize(cells);
 }
 
-ModalChannels modal_channels(const Gyro& gyro, double T,
+ModalChannels modal_channels(const TrimmedGyro& gyro, double T,
                              const MemoryState& memory) {
   const ModalParameters modal = modal_at(gyro, T, memory);
   ModalChannels c;
@@ -134,7 +134,8 @@ ModalTable::Point ModalTable::at(double T) {
           (c[1] + s * (2 * c[2] + 3 * s * c[3])) * (count / kModalGrid)};
 }
 
-ModalMemory::ModalMemory(const Gyro& gyro, const MemoryTrajectory& memory)
+ModalMemory::ModalMemory(const TrimmedGyro& gyro,
+                         const MemoryTrajectory& memory)
     : memory_(memory) {
   const bool turns = gyro.device.memory.hysteresis.has_value();
   for (std::size_t k = 0; k < memory.times().size(); ++k) {

@@ -35,7 +35,7 @@ std::complex<double> coupling_of(const ModalChannels& channels, Patch patch);
 
 /// Returns the exact coefficients at beam temperature T [K], which those of
 /// spurious modes are no part of.
-ModalChannels modal_channels(const Gyro& gyro, double T,
+ModalChannels modal_channels(const TrimmedGyro& gyro, double T,
                              const MemoryState& memory = {});
 
 /// Returns whether two sets of coefficients differ by less than what is worth
@@ -50,7 +50,7 @@ bool are_equal(const ModalChannels& have, const ModalChannels& want);
 /// solution). Not safe for use by two threads at once.
 class ModalTable {
  public:
-  explicit ModalTable(const Gyro& gyro);
+  explicit ModalTable(const TrimmedGyro& gyro);
 
   struct Point {
     ModalChannels value, slope;  // slope per K
@@ -69,7 +69,7 @@ class ModalTable {
   bool accurate(const Cubic& cubic, double left, double right) const;
   const std::vector<Cubic>& cell(std::size_t i);
 
-  Gyro gyro_;
+  TrimmedGyro gyro_;
   PerPatch<Eigen::Vector2d> direction_;
   std::vector<std::vector<Cubic>> cells_;  // empty until needed
 };
@@ -87,7 +87,7 @@ inline constexpr double kHottestBeam = 473.15;  // [K]
 class ModalMemory {
  public:
   /// The trajectory must outlive the object.
-  ModalMemory(const Gyro& gyro, const MemoryTrajectory& memory);
+  ModalMemory(const TrimmedGyro& gyro, const MemoryTrajectory& memory);
 
   /// The coefficients to add at time `t` [s] with the beam at `beam` [K].
   /// `interval` is where the last call found its knots, and 0 at first.

@@ -29,7 +29,7 @@ void RebalanceStability::check(double t, double beam, double board) {
       kCalibrationTemperature - kZeroCelsius));
 }
 
-std::optional<RebalanceStability> rebalance_stability(const Gyro& gyro) {
+std::optional<RebalanceStability> rebalance_stability(const TrimmedGyro& gyro) {
   if (gyro.loop.mode != ReadoutMode::kForceRebalance) return {};
   return std::optional<RebalanceStability>(std::in_place, gyro);
 }

@@ -14,7 +14,7 @@ namespace beamgyro::internal {
 class RebalanceStability {
  public:
   /// `gyro` must outlive the object.
-  explicit RebalanceStability(const Gyro& gyro)
+  explicit RebalanceStability(const TrimmedGyro& gyro)
       : gyro_(gyro), ode_(gyro, drive_heating(gyro)) {}
 
   /// Throws SimulationFailure when the loop is unstable with the beam and the
@@ -23,12 +23,12 @@ class RebalanceStability {
   void check(double t, double beam, double board);
 
  private:
-  const Gyro& gyro_;
+  const TrimmedGyro& gyro_;
   EnvelopeOde ode_;
   double beam_ = 0, board_ = 0;  // checked last [K]
 };
 
 /// None for a unit in open loop.
-std::optional<RebalanceStability> rebalance_stability(const Gyro& gyro);
+std::optional<RebalanceStability> rebalance_stability(const TrimmedGyro& gyro);
 
 }  // namespace beamgyro::internal

@@ -8,13 +8,13 @@
 
 namespace beamgyro::internal {
 
-SmoothModes::SmoothModes(const Gyro& gyro, double low, double high) {
+SmoothModes::SmoothModes(const TrimmedGyro& gyro, double low, double high) {
   for (std::size_t p = 0; p < direction_.size(); ++p) {
     direction_[p] = patch_position(gyro.device, static_cast<Patch>(p))
                         .normalized()
                         .cast<Complex>();
   }
-  Gyro untrimmed = gyro;
+  TrimmedGyro untrimmed = gyro;
   untrimmed.stiffness_trim = 0;
   untrimmed.spurious_reference = 0;
   std::vector<double> cuts = modal_kinks(gyro.device);
@@ -28,7 +28,7 @@ SmoothModes::SmoothModes(const Gyro& gyro, double low, double high) {
 
 // Halves the piece until it agrees with the exact parameters where the error of
 // Chebyshev interpolation is largest.
-void SmoothModes::add(const Gyro& untrimmed, double low, double high) {
+void SmoothModes::add(const TrimmedGyro& untrimmed, double low, double high) {
   constexpr double kSmallest = 1e-3;  // [K]
   static const Eigen::MatrixXd transform =
       chebyshev_transform(kNodes).transpose();
@@ -67,7 +67,7 @@ ModalChannels SmoothModes::value(const Piece& piece, double T) {
 }
 
 ModalParameters SmoothModes::at(
-    const Gyro& gyro, const SpuriousTemperatures& temperatures) const {
+    const TrimmedGyro& gyro, const SpuriousTemperatures& temperatures) const {
   const double T = temperatures.beam;
   const auto piece =
       std::find_if(pieces_.begin(), pieces_.end() - 1,

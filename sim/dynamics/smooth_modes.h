@@ -17,11 +17,11 @@ namespace beamgyro::internal {
 class SmoothModes {
  public:
   /// For beam temperatures in [low, high] [K].
-  SmoothModes(const Gyro& gyro, double low, double high);
+  SmoothModes(const TrimmedGyro& gyro, double low, double high);
 
   /// Returns modal_at() of `gyro`, which is the unit of the constructor with
   /// any trim and with or without its spurious modes.
-  ModalParameters at(const Gyro& gyro,
+  ModalParameters at(const TrimmedGyro& gyro,
                      const SpuriousTemperatures& temperatures) const;
 
  private:
@@ -32,7 +32,7 @@ class SmoothModes {
   };
 
   static ModalChannels value(const Piece& piece, double T);
-  void add(const Gyro& untrimmed, double low, double high);
+  void add(const TrimmedGyro& untrimmed, double low, double high);
 
   PerPatch<Eigen::Vector2cd> direction_;
   std::vector<Piece> pieces_;

@@ -5,7 +5,7 @@
 
 namespace beamgyro::internal {
 
-bool needs_exact_solution(const Gyro& gyro) {
+bool needs_exact_solution(const TrimmedGyro& gyro) {
   const auto& modes = gyro.device.spurious_modes;
   return !modes.empty() &&
          (gyro.device.memory.any() ||

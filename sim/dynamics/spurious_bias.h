@@ -9,7 +9,7 @@ namespace beamgyro::internal {
 /// the beam because of spurious modes: on that of the housing, which some of
 /// them follow, or on the memory of the unit, which moves their crossings. A
 /// StaticMap does not hold it then.
-bool needs_exact_solution(const Gyro& gyro);
+bool needs_exact_solution(const TrimmedGyro& gyro);
 
 /// The part of the zero-rate output that comes from the spurious modes of a
 /// unit: its output less that of the same unit without them, both trimmed
@@ -17,7 +17,7 @@ bool needs_exact_solution(const Gyro& gyro);
 class SpuriousBias {
  public:
   /// `gyro`, which has spurious modes, must outlive the object.
-  explicit SpuriousBias(const Gyro& gyro)
+  explicit SpuriousBias(const TrimmedGyro& gyro)
       : gyro_(gyro), without_(without_spurious_modes(gyro)) {}
 
   /// Returns it [rad/s] for the demodulated signals at rest [rad/s] with and
@@ -38,8 +38,8 @@ class SpuriousBias {
                  const MemoryState& memory, const Electronics& board);
 
  private:
-  const Gyro& gyro_;
-  Gyro without_;
+  const TrimmedGyro& gyro_;
+  TrimmedGyro without_;
   LockPath path_, path_without_;
 };
 

@@ -19,8 +19,9 @@ double detuning_at(const SpuriousModeParameters& mode, double reference,
          drive_frequency / reference;
 }
 
-SpuriousBump bump_at(const Gyro& gyro, const SpuriousModeParameters& mode,
-                     double T, double drive_tc) {
+SpuriousBump bump_at(const TrimmedGyro& gyro,
+                     const SpuriousModeParameters& mode, double T,
+                     double drive_tc) {
   return {mode.name, T,
           mode.coupling_drive * mode.coupling_sense * gyro.spurious_reference /
               (2 * mode.loss_factor * gyro.beam.angular_gain),
@@ -41,7 +42,7 @@ double zero_between(double low, double high,
 
 }  // namespace
 
-std::vector<SpuriousBump> spurious_bumps(const Gyro& gyro, double low,
+std::vector<SpuriousBump> spurious_bumps(const TrimmedGyro& gyro, double low,
                                          double high,
                                          const Frequency& drive_frequency) {
   std::vector<SpuriousBump> bumps;
@@ -75,10 +76,10 @@ std::vector<SpuriousBump> spurious_bumps(const Gyro& gyro, double low,
   return bumps;
 }
 
-std::vector<SpuriousBump> spurious_bumps(const Gyro& gyro, double low,
+std::vector<SpuriousBump> spurious_bumps(const TrimmedGyro& gyro, double low,
                                          double high) {
   if (gyro.spurious_reference == 0) return {};
-  const Gyro without = without_spurious_modes(gyro);
+  const TrimmedGyro without = without_spurious_modes(gyro);
   LockPath path;
   return spurious_bumps(gyro, low, high, [&](double T) {
     return static_solution(without, modal_at(without, T), {}, path)

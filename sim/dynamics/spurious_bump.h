@@ -22,11 +22,11 @@ struct SpuriousBump {
 /// modes in their order. `drive_frequency` is w_d [rad/s] of the unit without
 /// spurious modes at a beam temperature [K].
 std::vector<SpuriousBump> spurious_bumps(
-    const Gyro& gyro, double low, double high,
+    const TrimmedGyro& gyro, double low, double high,
     const std::function<double(double T)>& drive_frequency);
 
 /// The same from the exact solution.
-std::vector<SpuriousBump> spurious_bumps(const Gyro& gyro, double low,
+std::vector<SpuriousBump> spurious_bumps(const TrimmedGyro& gyro, double low,
                                          double high);
 
 }  // namespace beamgyro::internal

@@ -13,7 +13,7 @@ using Eigen::Index;
 using Eigen::Vector2cd;
 using Eigen::Vector2d;
 
-SpuriousOscillators::SpuriousOscillators(const Gyro& gyro)
+SpuriousOscillators::SpuriousOscillators(const TrimmedGyro& gyro)
     : modes_(gyro.device.spurious_modes),
       reference_(gyro.spurious_reference),
       mass_(gyro.beam.mass),
@@ -39,7 +39,7 @@ const std::vector<SpuriousOscillator>& SpuriousOscillators::at(
   return now_;
 }
 
-Eigen::VectorXd spurious_error_weights(const Gyro& gyro) {
+Eigen::VectorXd spurious_error_weights(const TrimmedGyro& gyro) {
   std::vector<double> weights;
   for (const SpuriousModeParameters& mode : gyro.device.spurious_modes) {
     const double e =

@@ -25,7 +25,7 @@ struct SpuriousOscillator {
 /// The spurious modes of one gyro for those runs.
 class SpuriousOscillators {
  public:
-  explicit SpuriousOscillators(const Gyro& gyro);
+  explicit SpuriousOscillators(const TrimmedGyro& gyro);
 
   Eigen::Index count() const {
     return static_cast<Eigen::Index>(modes_.size());
@@ -47,7 +47,7 @@ class SpuriousOscillators {
 /// Returns the error of each real state of the modes, two a mode, that matters
 /// as much as one of 1 rad/s in the output: an error dQ is an acceleration
 /// w_0^2 e dQ, which is worth w_0 e dQ/2.
-Eigen::VectorXd spurious_error_weights(const Gyro& gyro);
+Eigen::VectorXd spurious_error_weights(const TrimmedGyro& gyro);
 
 /// The amplitudes Z_s of the spurious modes, Q = Re[Z e^{i theta}], on the slow
 /// manifold of (2.13) together with those of the beam: with n + 2 coordinates,

@@ -35,7 +35,7 @@ class StaticMap {
   /// Tabulates temperatures in [low, high] [K] and rates up to +-`rate_limit`
   /// [rad/s]. The error of the demodulated signal stays below `tolerance`
   /// [rad/s]; the default is 1e-6 deg/s.
-  StaticMap(const Gyro& gyro, double low, double high, double rate_limit,
+  StaticMap(const TrimmedGyro& gyro, double low, double high, double rate_limit,
             double tolerance = 1.7e-8);
 
   /// Returns the range of the memory states while the beam is within two
@@ -47,7 +47,7 @@ class StaticMap {
   /// the drive loop cannot lock, or more than so many polynomials and pieces
   /// resolve: the states that the unit visits may be harmless, and can be
   /// solved one by one.
-  StaticMap(const Gyro& gyro, double low, double high, double rate_limit,
+  StaticMap(const TrimmedGyro& gyro, double low, double high, double rate_limit,
             MemoryBounds bounds, double tolerance = 1.7e-7);
 
   struct Signals {
@@ -145,12 +145,12 @@ class StaticMap {
   std::complex<double> without_spurious(const Piece& piece, double T) const;
   const Piece& piece_at(double T) const;
 
-  Gyro gyro_;
+  TrimmedGyro gyro_;
   MemoryBounds bounds_;
   std::array<int, kMemoryAxes> memory_nodes_ = {1, 1, 1};  // of all pieces
   LockPath path_;
   // Of a unit with spurious modes, and the path of the one without.
-  std::optional<Gyro> without_;
+  std::optional<TrimmedGyro> without_;
   LockPath without_path_;
   std::optional<SmoothModes> smooth_;
   double rate_limit_, tolerance_;

@@ -51,11 +51,11 @@ SimulationFailure unresolved(double low, double high) {
 
 }  // namespace
 
-StaticMap::StaticMap(const Gyro& gyro, double low, double high,
+StaticMap::StaticMap(const TrimmedGyro& gyro, double low, double high,
                      double rate_limit, double tolerance)
     : StaticMap(gyro, low, high, rate_limit, MemoryBounds{}, tolerance) {}
 
-StaticMap::StaticMap(const Gyro& gyro, double low, double high,
+StaticMap::StaticMap(const TrimmedGyro& gyro, double low, double high,
                      double rate_limit, MemoryBounds bounds, double tolerance)
     : gyro_(gyro),
       bounds_(std::move(bounds)),

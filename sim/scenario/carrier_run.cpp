@@ -32,7 +32,7 @@ constexpr double kWorthMeasuring = 60;  // [s]
 
 // Local error of each state that matters as much as one of 1 rad/s in the
 // output.
-VectorXd carrier_error_weights(const Gyro& gyro, const CarrierOde& ode) {
+VectorXd carrier_error_weights(const TrimmedGyro& gyro, const CarrierOde& ode) {
   VectorXd weights = VectorXd::Ones(ode.size());
   for (const Eigen::Index i : {kPosition, kVelocity}) {
     weights(i) = 0.3;
@@ -50,7 +50,7 @@ VectorXd carrier_error_weights(const Gyro& gyro, const CarrierOde& ode) {
 // One trajectory in order of time, from tick to tick.
 class CarrierTrajectory {
  public:
-  CarrierTrajectory(const ScenarioPlan& scenario, const Gyro& gyro,
+  CarrierTrajectory(const ScenarioPlan& scenario, const TrimmedGyro& gyro,
                     const Motion& motion, const RunTemperatures& temperatures,
                     const ModalMemory* memory, bool at_rest)
       : scenario_(scenario),
@@ -164,11 +164,11 @@ class CarrierTrajectory {
   double window_ = 0;  // start of the window [s]
 };
 
-double shown_rate(const Gyro& gyro, const VectorXd& y, double board) {
+double shown_rate(const TrimmedGyro& gyro, const VectorXd& y, double board) {
   return y(kOutput2) + electronics_at(gyro, board).offset;
 }
 
-RunSamples samples_at(std::span<const double> times, const Gyro& gyro,
+RunSamples samples_at(std::span<const double> times, const TrimmedGyro& gyro,
                       const RunTemperatures& temperatures,
                       CarrierTrajectory& trajectory, CarrierTrajectory* twin) {
   RunSamples s;
@@ -195,7 +195,7 @@ RunSamples samples_at(std::span<const double> times, const Gyro& gyro,
   return s;
 }
 
-void require_rate(const ScenarioPlan& scenario, const Gyro& gyro) {
+void require_rate(const ScenarioPlan& scenario, const TrimmedGyro& gyro) {
   const double drive =
       loop_electronics(gyro).nominal_frequency / (2 * std::numbers::pi);
   if (scenario.output_rate <= drive / 4) return;
@@ -207,7 +207,7 @@ void require_rate(const ScenarioPlan& scenario, const Gyro& gyro) {
 }
 
 // Wall time [s] here and now of a second of the run with power.
-double measured_cost(const ScenarioPlan& scenario, const Gyro& gyro) {
+double measured_cost(const ScenarioPlan& scenario, const TrimmedGyro& gyro) {
   ScenarioPlan first = scenario;
   first.duration = std::min(kTimedPart, scenario.duration);
   first.output_rate = std::max(scenario.output_rate, 2 / first.duration);
@@ -221,7 +221,7 @@ double measured_cost(const ScenarioPlan& scenario, const Gyro& gyro) {
 
 }  // namespace
 
-double carrier_cost(const ScenarioPlan& scenario, const Gyro& gyro) {
+double carrier_cost(const ScenarioPlan& scenario, const TrimmedGyro& gyro) {
   double powered = 0;
   for (const PowerInterval& interval : scenario.powered) {
     powered +=
@@ -233,7 +233,7 @@ double carrier_cost(const ScenarioPlan& scenario, const Gyro& gyro) {
                                  : powered * measured_cost(scenario, gyro);
 }
 
-void simulate_carrier(const ScenarioPlan& given, const Gyro& gyro,
+void simulate_carrier(const ScenarioPlan& given, const TrimmedGyro& gyro,
                       const RunKey& key, const BlockSink& on_block) {
   const ScenarioPlan scenario = with_aligned_borders(given);
   require_rate(scenario, gyro);

@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 // Local error of each state that matters as much as one of 1 rad/s in the
 // output: 1e-6 of the drive amplitude moves the output of a unit with a
 // quadrature of some 100 deg/s by 2e-6 rad/s, and so on.
-VectorXd error_weights(const Gyro& gyro, const EnvelopeOde& ode) {
+VectorXd error_weights(const TrimmedGyro& gyro, const EnvelopeOde& ode) {
   VectorXd weights = VectorXd::Ones(ode.size());
   weights.segment<2>(kAmplitude).setConstant(0.3);
   weights.segment<2>(kAmplitude + 2).setConstant(2e-3);
@@ -39,7 +39,8 @@ const std::vector<Index> kStoredStates = {
 constexpr std::size_t kFirstNode = 6;
 
 RunSamples samples_of_states(const std::vector<std::vector<double>>& c,
-                             const LoopElectronics& loops, const Gyro& gyro) {
+                             const LoopElectronics& loops,
+                             const TrimmedGyro& gyro) {
   const std::size_t count = c[0].size();
   RunSamples s;
   s.output.resize(count);
@@ -86,8 +87,9 @@ std::vector<Border> borders_of(const ScenarioPlan& scenario,
 }  // namespace
 
 EnvelopeTrajectory::EnvelopeTrajectory(const ScenarioPlan& scenario,
-                                       const Gyro& gyro, const Motion& motion,
-                                       bool at_rest, const ModalMemory* memory,
+                                       const TrimmedGyro& gyro,
+                                       const Motion& motion, bool at_rest,
+                                       const ModalMemory* memory,
                                        double tolerance)
     : scenario_(scenario),
       gyro_(gyro),
@@ -189,7 +191,7 @@ RunSamples EnvelopeTrajectory::advance(std::span<const double> times) {
   return samples;
 }
 
-void simulate_envelope(const ScenarioPlan& given, const Gyro& gyro,
+void simulate_envelope(const ScenarioPlan& given, const TrimmedGyro& gyro,
                        const RunKey& key, const BlockSink& on_block) {
   const ScenarioPlan scenario = with_aligned_borders(given);
   LoopRun run(scenario, gyro, key);

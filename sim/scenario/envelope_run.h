@@ -30,7 +30,7 @@ class EnvelopeTrajectory {
   /// `at_rest` selects the twin, whose rate about z is zero. The scenario, gyro
   /// and motion must outlive the trajectory. `tolerance` is the local error of
   /// a step in the output [rad/s], other states in proportion.
-  EnvelopeTrajectory(const ScenarioPlan& scenario, const Gyro& gyro,
+  EnvelopeTrajectory(const ScenarioPlan& scenario, const TrimmedGyro& gyro,
                      const Motion& motion, bool at_rest,
                      const ModalMemory* memory = nullptr,
                      double tolerance = 1e-8);
@@ -50,7 +50,7 @@ class EnvelopeTrajectory {
   void check(double t, const Eigen::VectorXd& y);
 
   const ScenarioPlan& scenario_;
-  const Gyro& gyro_;
+  const TrimmedGyro& gyro_;
   const Motion& motion_;
   bool at_rest_;
   MaterialLimits limits_;
@@ -73,7 +73,7 @@ class EnvelopeTrajectory {
 /// follow as in every run. At each power-on the gyro starts at rest. `on_block`
 /// receives the recording block by block, so memory does not grow with the run.
 /// Throws as MaterialLimits, RebalanceStability and the integrator.
-void simulate_envelope(const ScenarioPlan& scenario, const Gyro& gyro,
+void simulate_envelope(const ScenarioPlan& scenario, const TrimmedGyro& gyro,
                        const RunKey& key, const BlockSink& on_block);
 
 }  // namespace beamgyro::internal

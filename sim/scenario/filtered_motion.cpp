@@ -109,7 +109,7 @@ SampleStream filtered_square_acceleration(std::span<const Signal> axes,
   };
 }
 
-FilteredMotion::FilteredMotion(const Gyro& gyro, const Motion& motion,
+FilteredMotion::FilteredMotion(const TrimmedGyro& gyro, const Motion& motion,
                                double output_rate)
     : mount_(gyro.device.mount) {
   const double corner = gyro.device.readout.corner_frequency;

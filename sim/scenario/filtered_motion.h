@@ -24,7 +24,8 @@ SampleStream filtered_square_acceleration(std::span<const Signal> axes,
 class FilteredMotion {
  public:
   /// `gyro` and `motion` must outlive the object.
-  FilteredMotion(const Gyro& gyro, const Motion& motion, double output_rate);
+  FilteredMotion(const TrimmedGyro& gyro, const Motion& motion,
+                 double output_rate);
 
   /// Goes on to the next `count` samples.
   void next(std::size_t count);

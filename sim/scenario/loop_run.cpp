@@ -12,7 +12,8 @@ namespace beamgyro::internal {
 namespace {
 
 std::optional<SensingNoise> noise_of(const ScenarioPlan& scenario,
-                                     const Gyro& gyro, const RunKey& key) {
+                                     const TrimmedGyro& gyro,
+                                     const RunKey& key) {
   std::optional<SensingNoise> noise;
   if (scenario.noise_enabled) noise.emplace(scenario, gyro, key);
   return noise;
@@ -20,7 +21,7 @@ std::optional<SensingNoise> noise_of(const ScenarioPlan& scenario,
 
 }  // namespace
 
-LoopRun::LoopRun(const ScenarioPlan& scenario, const Gyro& gyro,
+LoopRun::LoopRun(const ScenarioPlan& scenario, const TrimmedGyro& gyro,
                  const RunKey& key)
     : scenario_(scenario),
       gyro_(gyro),

@@ -18,7 +18,8 @@ namespace beamgyro::internal {
 class LoopRun {
  public:
   /// `scenario` and `gyro` must outlive the object.
-  LoopRun(const ScenarioPlan& scenario, const Gyro& gyro, const RunKey& key);
+  LoopRun(const ScenarioPlan& scenario, const TrimmedGyro& gyro,
+          const RunKey& key);
 
   const Motion& motion() const { return motion_; }
   /// Null for a unit without memory.
@@ -40,7 +41,7 @@ class LoopRun {
                   RunSamples& samples) const;
 
   const ScenarioPlan& scenario_;
-  const Gyro& gyro_;
+  const TrimmedGyro& gyro_;
   Motion motion_;
   std::unique_ptr<MemoryTrajectory> memory_;
   std::optional<ModalMemory> added_;

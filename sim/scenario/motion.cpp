@@ -59,7 +59,7 @@ bool MotionSegment::is_constant() const {
   return std::none_of(axes_.begin(), axes_.end(), moving);
 }
 
-Motion::Motion(const ScenarioPlan& scenario, const Gyro& gyro,
+Motion::Motion(const ScenarioPlan& scenario, const TrimmedGyro& gyro,
                const RunKey& key)
     : mount_(gyro.device.mount) {
   const auto realise = [&](const RateProfile& profile,

@@ -38,7 +38,8 @@ class MotionSegment {
 /// The motion of the case over a whole run. Random rates have been drawn.
 class Motion {
  public:
-  Motion(const ScenarioPlan& scenario, const Gyro& gyro, const RunKey& key);
+  Motion(const ScenarioPlan& scenario, const TrimmedGyro& gyro,
+         const RunKey& key);
 
   /// Returns the times at which an axis bends or jumps, axis by axis.
   std::vector<Border> borders() const;

@@ -37,7 +37,7 @@ using Samples = std::vector<double>;
 // nearest of a grid, by series that are exact to roundoff.
 class Board {
  public:
-  explicit Board(const Gyro& gyro)
+  explicit Board(const TrimmedGyro& gyro)
       : readout_(gyro.device.readout), offset_(gyro.offset) {}
 
   Electronics at(double temperature) {
@@ -115,7 +115,7 @@ class FilteredRate {
   std::size_t taken_ = 0;
 };
 
-std::optional<SpuriousBias> spurious_bias_of(const Gyro& gyro) {
+std::optional<SpuriousBias> spurious_bias_of(const TrimmedGyro& gyro) {
   if (gyro.device.spurious_modes.empty()) return std::nullopt;
   return std::optional<SpuriousBias>(std::in_place, gyro);
 }
@@ -125,7 +125,7 @@ std::optional<SpuriousBias> spurious_bias_of(const Gyro& gyro) {
 class RateResponse {
  public:
   /// `beam` is the range of the beam's temperature.
-  RateResponse(const Gyro& gyro, const Motion& motion,
+  RateResponse(const TrimmedGyro& gyro, const Motion& motion,
                const TemperatureSpan& beam, const MemoryTrajectory* memory,
                const SampleGrid& grid)
       : board_(gyro),
@@ -156,7 +156,7 @@ class RateResponse {
   }
 
  private:
-  static StaticMap map_of(const Gyro& gyro, const TemperatureSpan& range,
+  static StaticMap map_of(const TrimmedGyro& gyro, const TemperatureSpan& range,
                           const MemoryTrajectory* memory, double fastest) {
     if (memory == nullptr) return {gyro, range.low, range.high, fastest};
     return {
@@ -183,7 +183,8 @@ class RateResponse {
 // behind the output filter.
 class MotionResponse {
  public:
-  MotionResponse(const Gyro& gyro, const Motion& motion, double output_rate)
+  MotionResponse(const TrimmedGyro& gyro, const Motion& motion,
+                 double output_rate)
       : gyro_(gyro),
         board_(gyro),
         motion_(gyro, motion, output_rate),
@@ -226,7 +227,7 @@ class MotionResponse {
         spurious_->at(at_rest, temperatures, memory, motion, board);
   }
 
-  const Gyro& gyro_;
+  const TrimmedGyro& gyro_;
   Board board_;
   LockPath path_;
   FilteredMotion motion_;
@@ -235,7 +236,7 @@ class MotionResponse {
 
 using StaticResponse = std::function<void(RunSamples& samples)>;
 
-StaticResponse static_response(const Gyro& gyro, const Motion& motion,
+StaticResponse static_response(const TrimmedGyro& gyro, const Motion& motion,
                                const TemperatureSpan& beam,
                                const MemoryTrajectory* memory,
                                const SampleGrid& grid) {
@@ -252,7 +253,7 @@ StaticResponse static_response(const Gyro& gyro, const Motion& motion,
 
 }  // namespace
 
-void simulate_quasistatic(const ScenarioPlan& given, const Gyro& gyro,
+void simulate_quasistatic(const ScenarioPlan& given, const TrimmedGyro& gyro,
                           const RunKey& key, const BlockSink& on_block,
                           std::size_t block_samples) {
   if (given.fidelity != Fidelity::kQuasistatic) {

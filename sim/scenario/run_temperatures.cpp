@@ -9,7 +9,8 @@
 
 namespace beamgyro::internal {
 
-ThermalLoad thermal_load(const ScenarioPlan& scenario, const Gyro& gyro) {
+ThermalLoad thermal_load(const ScenarioPlan& scenario,
+                         const TrimmedGyro& gyro) {
   const DriveHeating heating = drive_heating(gyro);
   return {.ambient = scenario.ambient,
           .stirred = scenario.stirred,
@@ -18,8 +19,8 @@ ThermalLoad thermal_load(const ScenarioPlan& scenario, const Gyro& gyro) {
           .dielectric_power = heating.dielectric};
 }
 
-RunTemperatures::RunTemperatures(const ScenarioPlan& scenario, const Gyro& gyro,
-                                 double step)
+RunTemperatures::RunTemperatures(const ScenarioPlan& scenario,
+                                 const TrimmedGyro& gyro, double step)
     : step_(step) {
   std::vector<double> times;
   for (std::size_t k = 0;; ++k) {
@@ -42,7 +43,7 @@ double RunTemperatures::at(ThermalNode node, double t) const {
 }
 
 std::unique_ptr<MemoryTrajectory> memory_at_start(const ScenarioPlan& scenario,
-                                                  const Gyro& gyro) {
+                                                  const TrimmedGyro& gyro) {
   const DeviceParameters& device = gyro.device;
   if (!device.memory.any()) return nullptr;
   return std::make_unique<MemoryTrajectory>(
@@ -51,7 +52,7 @@ std::unique_ptr<MemoryTrajectory> memory_at_start(const ScenarioPlan& scenario,
 }
 
 std::unique_ptr<MemoryTrajectory> memory_of_run(const ScenarioPlan& scenario,
-                                                const Gyro& gyro) {
+                                                const TrimmedGyro& gyro) {
   std::unique_ptr<MemoryTrajectory> memory = memory_at_start(scenario, gyro);
   if (!memory) return nullptr;
   integrate_temperatures(ThermalNetwork(gyro.device.thermal),

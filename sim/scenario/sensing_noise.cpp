@@ -16,8 +16,8 @@ bool has_channel_noise(const ScenarioPlan& scenario,
          device.loop_channels->noise;
 }
 
-SensingNoise::SensingNoise(const ScenarioPlan& scenario, const Gyro& gyro,
-                           const RunKey& key)
+SensingNoise::SensingNoise(const ScenarioPlan& scenario,
+                           const TrimmedGyro& gyro, const RunKey& key)
     : scenario_(scenario),
       gyro_(gyro),
       ode_(gyro, drive_heating(gyro)),
@@ -65,7 +65,8 @@ RunNoise SensingNoise::rms() {
   return {.drive_frequency = rms(0), .drive_voltage = rms(1)};
 }
 
-SlowDriveNoise::SlowDriveNoise(const ScenarioPlan& scenario, const Gyro& gyro,
+SlowDriveNoise::SlowDriveNoise(const ScenarioPlan& scenario,
+                               const TrimmedGyro& gyro,
                                const TemperatureSpan& beam, const RunKey& key)
     : frequency_stream_(scenario.seed, key.device, key.run,
                         kDriveFrequencyNoiseStream),

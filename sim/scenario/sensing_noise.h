@@ -22,7 +22,7 @@ bool has_channel_noise(const ScenarioPlan& scenario,
 class SensingNoise {
  public:
   /// `scenario` and `gyro` must outlive it.
-  SensingNoise(const ScenarioPlan& scenario, const Gyro& gyro,
+  SensingNoise(const ScenarioPlan& scenario, const TrimmedGyro& gyro,
                const RunKey& key);
 
   /// Adds the noise to output and quadrature of the next samples and, where
@@ -35,7 +35,7 @@ class SensingNoise {
 
  private:
   const ScenarioPlan& scenario_;
-  const Gyro& gyro_;
+  const TrimmedGyro& gyro_;
   EnvelopeOde ode_;
   RunKey key_;
   std::optional<LinearNoise> noise_;
@@ -48,7 +48,7 @@ class SensingNoise {
 class SlowDriveNoise {
  public:
   /// `beam` holds all temperatures of the beam.
-  SlowDriveNoise(const ScenarioPlan& scenario, const Gyro& gyro,
+  SlowDriveNoise(const ScenarioPlan& scenario, const TrimmedGyro& gyro,
                  const TemperatureSpan& beam, const RunKey& key);
 
   /// Writes the noise of the next samples.

@@ -35,8 +35,8 @@ void append_block(Recording& whole, Recording&& block, std::size_t samples) {
   reserve(whole, samples);
 }
 
-void simulate(const ScenarioPlan& scenario, const Gyro& gyro, const RunKey& key,
-              const BlockSink& on_block) {
+void simulate(const ScenarioPlan& scenario, const TrimmedGyro& gyro,
+              const RunKey& key, const BlockSink& on_block) {
   switch (scenario.fidelity) {
     case Fidelity::kQuasistatic:
       return simulate_quasistatic(scenario, gyro, key, on_block);
@@ -47,7 +47,7 @@ void simulate(const ScenarioPlan& scenario, const Gyro& gyro, const RunKey& key,
   }
 }
 
-Recording simulated(const ScenarioPlan& scenario, const Gyro& gyro,
+Recording simulated(const ScenarioPlan& scenario, const TrimmedGyro& gyro,
                     const RunKey& key) {
   Recording whole;
   if (scenario.fidelity == Fidelity::kQuasistatic) {  // in one block

@@ -18,7 +18,7 @@ namespace beamgyro::internal {
 /// with every column (docs/reference/recording.md) and `status`, so memory does
 /// not grow with the samples. The recording does not depend on the size of the
 /// blocks. Throws std::invalid_argument for a scenario of another fidelity.
-void simulate_quasistatic(const ScenarioPlan& scenario, const Gyro& gyro,
+void simulate_quasistatic(const ScenarioPlan& scenario, const TrimmedGyro& gyro,
                           const RunKey& key, const BlockSink& on_block,
                           std::size_t block_samples = kBlockSamples);
 
@@ -28,7 +28,7 @@ void simulate_quasistatic(const ScenarioPlan& scenario, const Gyro& gyro,
 /// kCarrierTick. Everything else is as in simulate_envelope(). Throws
 /// std::invalid_argument for an output rate above a quarter of the drive
 /// frequency.
-void simulate_carrier(const ScenarioPlan& scenario, const Gyro& gyro,
+void simulate_carrier(const ScenarioPlan& scenario, const TrimmedGyro& gyro,
                       const RunKey& key, const BlockSink& on_block);
 
 inline constexpr double kCarrierTick = 1e-3;  // [s]
@@ -36,19 +36,19 @@ inline constexpr double kCarrierTick = 1e-3;  // [s]
 /// Estimates the time [s] that simulate_carrier() takes here. A run of more
 /// than a minute on the machine of bench/README.md is estimated from its first
 /// second with power, which is simulated for it.
-double carrier_cost(const ScenarioPlan& scenario, const Gyro& gyro);
+double carrier_cost(const ScenarioPlan& scenario, const TrimmedGyro& gyro);
 
 /// Simulates a run at the fidelity of its scenario, block by block. Throws as
 /// simulate_quasistatic(), simulate_envelope() and simulate_carrier().
-void simulate(const ScenarioPlan& scenario, const Gyro& gyro, const RunKey& key,
-              const BlockSink& on_block);
+void simulate(const ScenarioPlan& scenario, const TrimmedGyro& gyro,
+              const RunKey& key, const BlockSink& on_block);
 
 /// Adds the next block to a recording that will have `samples`; the first one
 /// becomes the recording.
 void append_block(Recording& whole, Recording&& block, std::size_t samples);
 
 /// Returns the whole recording in memory.
-Recording simulated(const ScenarioPlan& scenario, const Gyro& gyro,
+Recording simulated(const ScenarioPlan& scenario, const TrimmedGyro& gyro,
                     const RunKey& key = {});
 Recording simulated(const ScenarioPlan& scenario,
                     const DeviceParameters& device, const RunKey& key = {});

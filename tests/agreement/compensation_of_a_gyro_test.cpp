@@ -23,8 +23,8 @@ ModelSpec shipped_model(const std::string& name) {
 
 // The zero-rate output over temperature as a recording at rest with one sample
 // a minute; noise in deg/s.
-Recording bias_curve(const Gyro& gyro, double first, double last, double step,
-                     double noise, std::uint32_t run) {
+Recording bias_curve(const TrimmedGyro& gyro, double first, double last,
+                     double step, double noise, std::uint32_t run) {
   RandomStream random(11, 0, run, kWhiteNoiseStream);
   Recording recording;
   Column rate{"rate", "degree/s", "", Role::kMeasured, {}};
@@ -54,7 +54,7 @@ double rms(const std::vector<double>& values) {
 
 TEST(Verification, V43CubicAgainstNetworkAndSplineOnTheBiasCurve) {
   constexpr double kLabelNoise = 0.005;  // [deg/s]
-  const Gyro gyro = make_gyro(verification_device());
+  const TrimmedGyro gyro = make_gyro(verification_device());
   const std::vector<TrainingRun> grid = {
       {"grid", "a", bias_curve(gyro, -40, 50, 2.5, kLabelNoise, 0)}};
   const std::vector<TrainingRun> held_out = {

@@ -195,7 +195,7 @@ TEST_P(AtTemperature, StaticSolutionIsWhereEnvelopeAndCarrierComeToRest) {
   // A board without mass or power keeps every node at ambient.
   const DeviceParameters device =
       fine_device({"thermal.electronics_power_W=0"});
-  const Gyro gyro = make_gyro(device);
+  const TrimmedGyro gyro = make_gyro(device);
   for (const Fidelity fidelity : {Fidelity::kEnvelope, Fidelity::kCarrier}) {
     const Recording run = simulated(scenario, fidelity, device);
     const double beam =

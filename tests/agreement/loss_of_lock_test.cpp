@@ -26,7 +26,7 @@ std::string ambient(const std::string& profile) {
   return "[ambient]\n" + profile + "\n";
 }
 
-BeamSignal static_signal(const Gyro& gyro, const Recording& run,
+BeamSignal static_signal(const TrimmedGyro& gyro, const Recording& run,
                          std::size_t k) {
   return beam_signal(
       gyro, column_values(run, "true_beam_temperature")[k] + kZeroCelsius, {});
@@ -48,7 +48,7 @@ double last_unlocked(const Recording& run) {
 // to 117 degC.
 TEST(Verification, V56EnvelopeLocksAgainAfterAHotExcursion) {
   const DeviceParameters device = nominal_device({"readout.adc_bits=32"});
-  const Gyro gyro = make_gyro(device);
+  const TrimmedGyro gyro = make_gyro(device);
   const Recording run = run_at(
       scenario_from(
           "[chamber]\nstirred = true\n",

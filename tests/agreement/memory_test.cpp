@@ -77,7 +77,7 @@ TEST(V48Memory, EffectsOfNoStrengthChangeNothing) {
 std::vector<double> direct_bias(const Recording& run,
                                 const DeviceParameters& device,
                                 std::size_t stride) {
-  const Gyro gyro = make_gyro(device);
+  const TrimmedGyro gyro = make_gyro(device);
   const auto at = [&](const char* name, std::size_t k) {
     return column_values(run, name)[k] + kZeroCelsius;
   };

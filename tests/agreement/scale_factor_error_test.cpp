@@ -49,10 +49,10 @@ TEST_P(ScaleFactorError, EveryFidelityShowsIt) {
 }
 
 TEST_P(ScaleFactorError, TrimsHoldWhateverItIs) {
-  const Gyro exact = make_gyro(unit(GetParam(), 0));
-  const Gyro wrong = make_gyro(unit(GetParam(), kError));
+  const TrimmedGyro exact = make_gyro(unit(GetParam(), 0));
+  const TrimmedGyro wrong = make_gyro(unit(GetParam(), kError));
   EXPECT_EQ(exact.stiffness_trim, wrong.stiffness_trim);
-  const auto at_rest = [](const Gyro& gyro) {
+  const auto at_rest = [](const TrimmedGyro& gyro) {
     return electronics_at(gyro, kCalibrationTemperature)
         .output(beam_signal(gyro, kCalibrationTemperature, {}).demodulated);
   };

@@ -28,7 +28,7 @@ DeviceParameters shipped(const std::string& name) {
 }
 
 // Zero-rate output over -40 .. 50 degC of beam and board [deg/s].
-std::vector<double> bias_curve(const Gyro& gyro) {
+std::vector<double> bias_curve(const TrimmedGyro& gyro) {
   std::vector<double> curve;
   for (int celsius = -40; celsius <= 50; ++celsius) {
     const double T = celsius + kZeroCelsius;
@@ -99,7 +99,7 @@ TEST(ShippedDevices, AMetalMountLeavesAlmostTheDriftButMostlyACubic) {
 
 TEST(ShippedDevices, HardCeramicDoublesQ) {
   const auto loss = [](const std::string& name) {
-    const Gyro gyro = make_gyro(shipped(name));
+    const TrimmedGyro gyro = make_gyro(shipped(name));
     return gyro.beam.timoshenko_frequency *
            modal_at(gyro, kCalibrationTemperature).damping(0, 0);
   };
@@ -125,7 +125,7 @@ TEST(ShippedDevices, TheOvenHoldsTheBeamOverTheAmbientRange) {
 }
 
 TEST(ShippedDevices, RebalancePaysWithThePatchThatPushesBack) {
-  const Gyro gyro = make_gyro(shipped("rebalance"));
+  const TrimmedGyro gyro = make_gyro(shipped("rebalance"));
   const auto slope = [&](double T) {
     return rate_slope(gyro, modal_at(gyro, T), T);
   };

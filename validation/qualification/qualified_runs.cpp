@@ -14,7 +14,7 @@ std::vector<Recording> qualified_runs(const std::vector<QualificationRun>& runs,
                                       const QualifiedDevice& device,
                                       std::size_t threads,
                                       const std::function<void()>& on_done) {
-  const Gyro gyro = make_gyro(device.device);
+  const TrimmedGyro gyro = make_gyro(device.device);
   std::vector<Recording> recordings(runs.size());
   for_each_task(runs.size(), threads, [&](std::size_t k, std::size_t) {
     const QualificationRun& run = runs[k];

@@ -29,7 +29,7 @@ double merit_of(const DeviceParameters& device, Merit merit,
 }
 
 TEST(DeviceMerits, TheCurveIsThatOfCharacterise) {
-  const Gyro gyro = make_gyro(nominal());
+  const TrimmedGyro gyro = make_gyro(nominal());
   const CurveGrid grid{-40, 50, 4};
   const StaticCurve curve = static_curve(gyro, grid);
   const Eigen::ArrayXd slope = scale_factor_curve(gyro, grid);
@@ -72,7 +72,7 @@ TEST(DeviceMerits, ThirtySevenTemperaturesFindThePeaks) {
 }
 
 TEST(DeviceMerits, TheWarmUpEndsAtTheTemperaturesOfALongRun) {
-  const Gyro gyro = make_gyro(nominal());
+  const TrimmedGyro gyro = make_gyro(nominal());
   const DriveHeating heating = drive_heating(gyro);
   ThermalLoad load{PiecewiseLinear::constant(25 + kZeroCelsius)};
   load.powered = {{0}};

@@ -37,7 +37,7 @@ TEST_P(AsBuilt, TheBaseUnitHasItsOwnTrims) {
 
 // A unit made with the keys as built has the settings of the base unit.
 TEST_P(AsBuilt, AUnitKeepsTheBaseUnitsSettings) {
-  const Gyro base = make_gyro(
+  const TrimmedGyro base = make_gyro(
       nominal_device({GetParam(), "readout.scale_factor_error=0.03"}));
   DeviceParameters built = drawn_unit({GetParam()});
   set_as_built(kNone, base, built);
@@ -45,14 +45,14 @@ TEST_P(AsBuilt, AUnitKeepsTheBaseUnitsSettings) {
                      base.device.readout.quadrature_trim),
             10 * kDegree);
   EXPECT_GT(std::abs(built.readout.scale_factor_error - 0.03), 1e-4);
-  const Gyro gyro = make_gyro(built);
+  const TrimmedGyro gyro = make_gyro(built);
   EXPECT_NEAR(gyro.stiffness_trim / base.stiffness_trim, 1, 1e-6);
   EXPECT_NEAR(std::abs(gyro.rate_axis) / std::abs(base.rate_axis), 1, 1e-9);
   EXPECT_NEAR(gyro.offset, base.offset, 1e-9);
 }
 
 TEST_P(AsBuilt, WhatIsTrimmedStaysAsItIs) {
-  const Gyro base = make_gyro(nominal_device({GetParam()}));
+  const TrimmedGyro base = make_gyro(nominal_device({GetParam()}));
   const DeviceParameters drawn =
       drawn_unit({GetParam(), "readout.scale_factor_error=-0.01"});
   DeviceParameters built = drawn;

@@ -32,7 +32,7 @@ std::vector<std::string> lines(const std::string& text) {
 }
 
 void expect_same_unit(const DeviceParameters& a, const DeviceParameters& b) {
-  const Gyro x = make_gyro(a), y = make_gyro(b);
+  const TrimmedGyro x = make_gyro(a), y = make_gyro(b);
   EXPECT_EQ(a.patches.offset, b.patches.offset);
   EXPECT_EQ(a.bond.thickness, b.bond.thickness);
   EXPECT_EQ(a.readout.quadrature_trim, b.readout.quadrature_trim);
@@ -118,13 +118,13 @@ TEST(Draws, OverridesHoldWhatWasNotTrimmed) {
   const CampaignPlan c = folder.campaign(campaign_text(
       "[tolerances]\n" + std::string(kOffset) + kTransitions +
       "[trims]\nquadrature = false\noffset = false\nscale_factor = false\n"));
-  const Gyro base = make_gyro(c.base_device);
+  const TrimmedGyro base = make_gyro(c.base_device);
   for (std::uint32_t i = 0; i < 8; ++i) {
     const VirtualDevice unit = c.device(i);
     ASSERT_TRUE(unit.device) << unit.failure;
     EXPECT_EQ(lines(unit.overrides).size(), 6u);
     expect_same_unit(*unit.device, nominal_device(lines(unit.overrides)));
-    const Gyro gyro = make_gyro(*unit.device);
+    const TrimmedGyro gyro = make_gyro(*unit.device);
     EXPECT_NEAR(gyro.offset, base.offset, 1e-9);
     EXPECT_NE(unit.device->readout.offset_trim,
               c.base_device.readout.offset_trim);

@@ -95,7 +95,7 @@ TEST_P(Population, AThousandDevicesFollowTheirDistributions) {
 
 // Zero-rate output, board and beam at -40 .. 50 degC [deg/s].
 double drift(const DeviceParameters& device) {
-  const Gyro gyro = make_gyro(device);
+  const TrimmedGyro gyro = make_gyro(device);
   double low = 1e9, high = -1e9;
   for (int celsius = -40; celsius <= 50; celsius += 5) {
     const double T = celsius + kZeroCelsius;

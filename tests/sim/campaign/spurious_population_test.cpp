@@ -68,7 +68,7 @@ TEST(SpuriousPopulation, CouplingsHaveTheDrawnHeightAndRatio) {
     const double* number = unit.parameters.data() + 1;
     for (const SpuriousModeParameters& mode : unit.device->spurious_modes) {
       // (13.4) with w_0 and gamma of the base unit.
-      const Gyro base = make_gyro(c.base_device);
+      const TrimmedGyro base = make_gyro(c.base_device);
       const double w_0 =
           beam_signal(base, kCalibrationTemperature, {}).drive_frequency;
       const double height = mode.coupling_drive * mode.coupling_sense * w_0 /

@@ -26,7 +26,7 @@ inline Complex charge_on(const ModalParameters& modal, Patch patch,
 
 // One unit with its carrier at two temperatures [K] and in one motion.
 struct CarrierUnit {
-  Gyro gyro;
+  TrimmedGyro gyro;
   double T_beam, T_board;
   CaseMotion motion;
   CarrierOde ode{gyro};

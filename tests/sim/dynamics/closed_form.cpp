@@ -56,7 +56,7 @@ ClosedForm closed_form(const ModalParameters& modal, const DriveLoop& loop,
   return f;
 }
 
-double closed_form_output(const Gyro& gyro, double T) {
+double closed_form_output(const TrimmedGyro& gyro, double T) {
   const ReadoutParameters& readout = gyro.device.readout;
   const auto at = [&](double temperature) {
     const ModalParameters modal = modal_at(gyro, temperature);

@@ -24,6 +24,6 @@ ClosedForm closed_form(const ModalParameters& modal, const DriveLoop& loop,
 
 /// Zero-rate output at beam and board temperature T [rad/s], offset trimmed at
 /// T_0, by (2.23).
-double closed_form_output(const Gyro& gyro, double T);
+double closed_form_output(const TrimmedGyro& gyro, double T);
 
 }  // namespace beamgyro::internal

@@ -95,7 +95,7 @@ TEST(Verification, V24ElectronicsPhaseShowsTheQuadrature) {
 }
 
 TEST(Verification, V42ClosedFormOverTemperature) {
-  const Gyro gyro = make_gyro(verification_device());
+  const TrimmedGyro gyro = make_gyro(verification_device());
   double largest = 0;
   for (double celsius = -40; celsius <= 60; celsius += 1) {
     const double T = celsius + kZeroCelsius;

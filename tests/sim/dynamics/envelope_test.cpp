@@ -30,14 +30,14 @@ EnvelopeInputs turning(double rate) {
           .powered = true};
 }
 
-Eigen::VectorXd settled(const Gyro& gyro, const EnvelopeOde& ode,
+Eigen::VectorXd settled(const TrimmedGyro& gyro, const EnvelopeOde& ode,
                         const CaseMotion& motion, double T) {
   return settled_state(gyro, ode, motion, T, T);
 }
 
 class Envelope : public testing::TestWithParam<std::vector<std::string>> {
  protected:
-  Gyro gyro = make_gyro(nominal_device(GetParam()));
+  TrimmedGyro gyro = make_gyro(nominal_device(GetParam()));
   EnvelopeOde ode{gyro, drive_heating(gyro)};
 
   // In open loop the integral of the rebalance is no part of the loops.

@@ -14,13 +14,13 @@ namespace {
 
 constexpr double kT0 = kCalibrationTemperature;
 
-double bias(const Gyro& gyro, double celsius) {  // [deg/s]
+double bias(const TrimmedGyro& gyro, double celsius) {  // [deg/s]
   const double T = celsius + kZeroCelsius;
   return zero_rate_output(gyro, T) / kDegree;
 }
 
 TEST(Verification, V41ZeroRateOutputOfTheNominalUnit) {
-  const Gyro gyro = make_gyro(verification_device());
+  const TrimmedGyro gyro = make_gyro(verification_device());
   const std::pair<double, double> table[] = {
       {-40, 3.88}, {-30, 3.67}, {-20, 4.33}, {-10, 3.53}, {0, 1.77},
       {10, 0.77},  {25, 0.50},  {40, 0.96},  {50, 1.02},  {60, -3.1}};
@@ -28,8 +28,8 @@ TEST(Verification, V41ZeroRateOutputOfTheNominalUnit) {
     EXPECT_NEAR(bias(gyro, celsius), expected, 0.02) << celsius << " degC";
 }
 
-TEST(Gyro, DriveFrequencyAndQualityOfTheNominalUnit) {
-  const Gyro gyro = make_gyro(verification_device());
+TEST(TrimmedGyro, DriveFrequencyAndQualityOfTheNominalUnit) {
+  const TrimmedGyro gyro = make_gyro(verification_device());
   const auto frequency = [&](double celsius) {
     return beam_signal(gyro, celsius + kZeroCelsius, {}).drive_frequency /
            (2 * std::numbers::pi);
@@ -48,8 +48,8 @@ TEST(Gyro, DriveFrequencyAndQualityOfTheNominalUnit) {
   }
 }
 
-TEST(Gyro, TrimsAreWhatTheFactoryWouldMeasure) {
-  const Gyro gyro = make_gyro(
+TEST(TrimmedGyro, TrimsAreWhatTheFactoryWouldMeasure) {
+  const TrimmedGyro gyro = make_gyro(
       nominal_device({"readout.quadrature_trim_deg_per_s=-25",
                       "readout.offset_trim_deg_per_s=-1.5",
                       "bond.thickness_m=[20e-6, 31e-6, 25e-6, 40e-6]"}));
@@ -59,18 +59,19 @@ TEST(Gyro, TrimsAreWhatTheFactoryWouldMeasure) {
   EXPECT_NEAR(rate_slope(gyro, modal, kT0), 1, 1e-12);
 }
 
-TEST(Gyro, AmplitudeControlCancelsThePiezoConstantInTheScaleFactor) {
+TEST(TrimmedGyro, AmplitudeControlCancelsThePiezoConstantInTheScaleFactor) {
   // e31 in drive, feedback and readout: their ratio keeps 1 % of its change.
-  const Gyro plain = make_gyro(nominal_device());
-  const Gyro strong = make_gyro(nominal_device({"patches.d31_tc_per_K=5e-3"}));
-  const auto slope = [](const Gyro& gyro) {
+  const TrimmedGyro plain = make_gyro(nominal_device());
+  const TrimmedGyro strong =
+      make_gyro(nominal_device({"patches.d31_tc_per_K=5e-3"}));
+  const auto slope = [](const TrimmedGyro& gyro) {
     const double T = kT0 + 20;
     return rate_slope(gyro, modal_at(gyro, T), T);
   };
   EXPECT_NEAR(slope(strong) / slope(plain), 1, 6e-4);
 }
 
-TEST(Gyro, AnImpossibleTrimIsReported) {
+TEST(TrimmedGyro, AnImpossibleTrimIsReported) {
   DeviceParameters device = nominal_device();
   device.readout.quadrature_trim = 1e9;
   EXPECT_THROW(make_gyro(device), std::runtime_error);

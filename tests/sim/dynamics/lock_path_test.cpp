@@ -31,7 +31,7 @@ std::vector<std::string> coupled(double side, double share, double angle) {
           "mount.axis_angle_deg=" + std::to_string(angle)};
 }
 
-Gyro strongly_coupled() {
+TrimmedGyro strongly_coupled() {
   return make_gyro(nominal_device(coupled(-0.003, 0.01, 20)));
 }
 
@@ -40,7 +40,7 @@ struct Shown {
 };
 
 // Board and beam at one temperature.
-Shown shown(const Gyro& gyro, double celsius) {
+Shown shown(const TrimmedGyro& gyro, double celsius) {
   const double T = celsius + kZeroCelsius;
   const BeamSignal signal = beam_signal(gyro, T, {});
   return {signal.drive_frequency / kHertz,
@@ -49,7 +49,7 @@ Shown shown(const Gyro& gyro, double celsius) {
 
 // Frequencies and bias that an envelope run of this device settles to.
 TEST(Verification, V57StronglyCoupledModesLockWhereTheEnvelopeDoes) {
-  const Gyro gyro = strongly_coupled();
+  const TrimmedGyro gyro = strongly_coupled();
   const Shown cold = shown(gyro, -40);
   EXPECT_NEAR(cold.frequency, 9145.09, 0.01);
   EXPECT_NEAR(cold.bias / -1578, 1, 0.005);
@@ -58,7 +58,7 @@ TEST(Verification, V57StronglyCoupledModesLockWhereTheEnvelopeDoes) {
 
 // Growth rate of the fastest growing disturbance of beam and loops, or a little
 // more, from the largest that any disturbance can be after a time [1/s].
-double growth(const Gyro& gyro, double celsius) {
+double growth(const TrimmedGyro& gyro, double celsius) {
   const double T = celsius + kZeroCelsius;
   EnvelopeOde ode(gyro, drive_heating(gyro));
   const Eigen::VectorXd y = settled_state(gyro, ode, {}, T, T);
@@ -70,7 +70,7 @@ double growth(const Gyro& gyro, double celsius) {
 }
 
 TEST(LockPath, LeadsToLocksThatTheLoopsHold) {
-  const Gyro gyro = strongly_coupled();
+  const TrimmedGyro gyro = strongly_coupled();
   for (double celsius = -40; celsius <= 60; celsius += 5)
     EXPECT_LT(growth(gyro, celsius), -5) << celsius;  // [1/s]
 }
@@ -79,7 +79,7 @@ TEST(LockPath, IsContinuous) {
   for (const std::vector<std::string>& keys :
        {coupled(-0.003, 0.01, 20), coupled(-0.0004, 0.0258, 33.9),
         coupled(-0.0015, 0.0226, 38.3)}) {
-    const Gyro gyro = make_gyro(nominal_device(keys));
+    const TrimmedGyro gyro = make_gyro(nominal_device(keys));
     double before = shown(gyro, 25).frequency;
     for (double celsius = 25; celsius >= -40; celsius -= 0.25) {
       const double frequency = shown(gyro, celsius).frequency;
@@ -90,7 +90,7 @@ TEST(LockPath, IsContinuous) {
   }
 }
 
-StaticSolution lowest_voltage(const Gyro& gyro, double celsius) {
+StaticSolution lowest_voltage(const TrimmedGyro& gyro, double celsius) {
   return static_solution(modal_at(gyro, celsius + kZeroCelsius), gyro.loop,
                          gyro.device.readout.feedthrough, {});
 }
@@ -98,7 +98,8 @@ StaticSolution lowest_voltage(const Gyro& gyro, double celsius) {
 // Modes come near each other and part again on the way from 25 degC: what was
 // the drive mode there is driven worse than the other one here.
 TEST(LockPath, MayNeedMoreVoltageThanTheOtherLock) {
-  const Gyro gyro = make_gyro(nominal_device(coupled(-0.0004, 0.0258, 33.9)));
+  const TrimmedGyro gyro =
+      make_gyro(nominal_device(coupled(-0.0004, 0.0258, 33.9)));
   const StaticSolution other = lowest_voltage(gyro, -40);
   EXPECT_FALSE(other.only_lock);
   const StaticSolution continued =
@@ -109,7 +110,8 @@ TEST(LockPath, MayNeedMoreVoltageThanTheOtherLock) {
 
 // The lock of 25 degC and the unstable one meet above -17 degC.
 TEST(LockPath, WhereItEndsTheLockOfTheLowestVoltageIsTaken) {
-  const Gyro gyro = make_gyro(nominal_device(coupled(-0.00032, 0.0367, 33.5)));
+  const TrimmedGyro gyro =
+      make_gyro(nominal_device(coupled(-0.00032, 0.0367, 33.5)));
   LockPath path;
   EXPECT_GT(path.at(gyro, 25 + kZeroCelsius), 0);
   EXPECT_EQ(path.at(gyro, -30 + kZeroCelsius), 0);
@@ -120,7 +122,7 @@ TEST(LockPath, WhereItEndsTheLockOfTheLowestVoltageIsTaken) {
 }
 
 // Stable locks by a look at every frequency.
-std::vector<double> locks_found(const Gyro& gyro,
+std::vector<double> locks_found(const TrimmedGyro& gyro,
                                 const ModalParameters& modal) {
   const auto lock = [&](double omega) -> Complex {
     const Eigen::Matrix2cd compliance =
@@ -165,7 +167,7 @@ TEST_P(AllLocks, AreKnown) {
         std::array{-0.006, 0.02, -40.0}}) {
     std::vector<std::string> keys = coupled(side, share, angle);
     keys.push_back("readout.mode=\"" + GetParam() + "\"");
-    const Gyro gyro = make_gyro(nominal_device(keys));
+    const TrimmedGyro gyro = make_gyro(nominal_device(keys));
     for (double celsius = -40; celsius <= 60; celsius += 5) {
       const ModalParameters modal = modal_at(gyro, celsius + kZeroCelsius);
       const std::vector<double> locks = locks_found(gyro, modal);
@@ -188,7 +190,7 @@ TEST_P(AllLocks, AreKnown) {
 }
 
 TEST(StaticMap, OfStronglyCoupledModesAgreesWithTheExactSolution) {
-  const Gyro gyro = strongly_coupled();
+  const TrimmedGyro gyro = strongly_coupled();
   const StaticMap map(gyro, 233.15, 333.15, 10 * kDegree);
   for (int i = 0; i < 200; ++i) {
     const double T = 233.15 + 0.5 * i;

@@ -20,7 +20,7 @@ inline double decay_time(const ModalParameters& modal) {
 }
 
 /// Zero-rate output with beam and board at one temperature [K], in rad/s.
-inline double zero_rate_output(const Gyro& gyro, double T) {
+inline double zero_rate_output(const TrimmedGyro& gyro, double T) {
   return electronics_at(gyro, T)
       .output(beam_signal(gyro, T, {}).demodulated)
       .rate;

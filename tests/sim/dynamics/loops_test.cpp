@@ -49,7 +49,7 @@ class HeldEnvelope {
   }
   const LoopElectronics& loops() const { return ode_.loops(); }
 
-  Gyro gyro;
+  TrimmedGyro gyro;
   std::function<double(double)> rate = [](double) { return 0.0; };
 
  private:
@@ -110,7 +110,7 @@ TEST(Verification, V31RebalanceHoldsTheReadoutAtZeroWithItsScaleFactor) {
   const VectorXd y = envelope.from(envelope.settled()).advance_to(1.5);
   EXPECT_LT(std::hypot(y(kReadout2), y(kReadout2 + 1)), 1e-9);
 
-  const Gyro& gyro = envelope.gyro;
+  const TrimmedGyro& gyro = envelope.gyro;
   const ModalParameters modal = modal_at(gyro, kT0);
   const StaticSolution s = static_solution(modal, gyro.loop, 0, {});
   const double scale = 2 * modal.coriolis_mass * s.drive_frequency *
@@ -120,7 +120,7 @@ TEST(Verification, V31RebalanceHoldsTheReadoutAtZeroWithItsScaleFactor) {
 }
 
 TEST(Verification, V31BiasOfRebalanceDoesNotDependOnTheSplit) {
-  const Gyro gyro = make_gyro(verification_device(kIdealRebalance));
+  const TrimmedGyro gyro = make_gyro(verification_device(kIdealRebalance));
   ModalParameters modal = modal_at(gyro, kT0);
   const double before = beam_signal(gyro, modal, {}).demodulated.real();
   modal.stiffness(1, 1) *= 1.005;

@@ -34,7 +34,7 @@ constexpr double kT0 = kCalibrationTemperature;
 
 // The nominal unit at rest at one temperature.
 struct Modes {
-  Gyro gyro;
+  TrimmedGyro gyro;
   ModalParameters modal;
   StaticSolution solution;
   NoiseDensities density;

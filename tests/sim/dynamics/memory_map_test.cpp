@@ -18,13 +18,13 @@ namespace beamgyro::internal::memory_map_test {
 namespace {
 
 // The nominal unit with every memory effect at its default constants.
-Gyro lifelike(std::vector<std::string> more = {}) {
+TrimmedGyro lifelike(std::vector<std::string> more = {}) {
   more.insert(more.end(), {"memory.relaxation={}", "memory.hysteresis={}",
                            "memory.ageing={}"});
   return make_gyro(nominal_device(more));
 }
 
-BeamSignal exact(const Gyro& gyro, double T, double rate,
+BeamSignal exact(const TrimmedGyro& gyro, double T, double rate,
                  const MemoryState& memory) {
   return beam_signal(
       gyro,
@@ -45,7 +45,7 @@ class MemoryMap : public testing::TestWithParam<double> {};
 TEST_P(MemoryMap, AgreesWithTheExactSolutionEverywhere) {
   constexpr double kCold = 233, kHot = 328;  // [K]
   const double limit = GetParam() * kDegree;
-  const Gyro gyro = lifelike();
+  const TrimmedGyro gyro = lifelike();
   const StaticMap map(gyro, kCold, kHot, limit, slow_bounds);
   double signal = 0, frequency = 0, voltage = 0, effect = 0;
   for (int i = 0; i < 2000; ++i) {  // a low-discrepancy sequence
@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(RateLimits, MemoryMap, testing::Values(0.0, 120.0));
 
 TEST(MemoryMap, ARangeOfTheGlassThatItCannotResolveIsRefused) {
   // T_f far above T, where tau_alpha changes by many decades along the axis.
-  const Gyro gyro =
+  const TrimmedGyro gyro =
       make_gyro(nominal_device({"memory.relaxation.nonlinearity=0.0"}));
   const auto wide = [](double, double) {
     return MemoryRange{{-40, -1, 0}, {30, 1, 1}};
@@ -94,7 +94,7 @@ TEST(MemoryMap, ARangeOfTheGlassThatItCannotResolveIsRefused) {
 TEST(V48Memory, WithoutAnEffectNothingChangesToTheLastBit) {
   // The states act on a device without [memory] as little as on one that has
   // it in its reference state.
-  const Gyro plain = make_gyro(nominal_device()), gyro = lifelike();
+  const TrimmedGyro plain = make_gyro(nominal_device()), gyro = lifelike();
   EXPECT_EQ(plain.stiffness_trim, gyro.stiffness_trim);
   EXPECT_EQ(plain.offset, gyro.offset);
   for (const double celsius : {-60.0, -40.0, 10.0, 38.0, 41.0, 90.0}) {
@@ -106,7 +106,7 @@ TEST(V48Memory, WithoutAnEffectNothingChangesToTheLastBit) {
 }
 
 TEST(Memory, EffectsHaveTheSizesOfTheSpecification) {
-  const Gyro gyro = lifelike();
+  const TrimmedGyro gyro = lifelike();
   const auto change = [&](const MemoryState& state) {
     const double T = 298.15;
     return (exact(gyro, T, 0, state).demodulated -
@@ -126,7 +126,8 @@ TEST(Memory, EffectsHaveTheSizesOfTheSpecification) {
 }
 
 TEST(V58Memory, LossesStayPositiveOverAllHistories) {
-  const Gyro gyro = lifelike();  // make_gyro() refuses a unit that does not
+  const TrimmedGyro gyro =
+      lifelike();  // make_gyro() refuses a unit that does not
   for (double T = 173.15; T <= 423.15; T += 10) {
     for (const double glass : {-40.0, -7.0, 0.0, 9.0}) {
       for (const double hysteresis : {-1.0, -0.3, 1.0}) {

@@ -12,7 +12,8 @@ namespace beamgyro::internal::modal_table_test {
 namespace {
 
 // The parameters that a point of the table stands for.
-ModalParameters parameters_at(const Gyro& gyro, ModalTable& table, double T) {
+ModalParameters parameters_at(const TrimmedGyro& gyro, ModalTable& table,
+                              double T) {
   const ModalChannels channels = table.at(T).value * gyro.beam.mass;
   ModalParameters modal = modal_at(gyro, T);
   modal.stiffness = stiffness_of(channels);
@@ -25,7 +26,7 @@ ModalParameters parameters_at(const Gyro& gyro, ModalTable& table, double T) {
 }
 
 TEST(ModalTable, GivesTheOutputOfTheExactSolution) {
-  const Gyro gyro = make_gyro(nominal_device());
+  const TrimmedGyro gyro = make_gyro(nominal_device());
   ModalTable table(gyro);
   double largest = 0;
   for (double T = 233.01; T < 334; T += 0.37) {

@@ -14,18 +14,18 @@ namespace {
 constexpr double kT0 = kCalibrationTemperature;
 
 // Change of rate and quadrature by a motion.
-Output change_by(const Gyro& gyro, const CaseMotion& motion) {
+Output change_by(const TrimmedGyro& gyro, const CaseMotion& motion) {
   const Complex change = beam_signal(gyro, kT0, motion).demodulated -
                          beam_signal(gyro, kT0, {}).demodulated;
   return {change.real(), -change.imag()};
 }
 
-double drive_frequency(const Gyro& gyro) {
+double drive_frequency(const TrimmedGyro& gyro) {
   return beam_signal(gyro, kT0, {}).drive_frequency;
 }
 
 TEST(Verification, V29EulerForceShowsAsQuadrature) {
-  const Gyro gyro = make_gyro(verification_device());
+  const TrimmedGyro gyro = make_gyro(verification_device());
   const CaseMotion motion{.z_acceleration = 1000};  // [rad/s2]
   const double expected = 1000 / (2 * drive_frequency(gyro));
   EXPECT_NEAR(expected, 8.76e-3, 0.01e-3);
@@ -33,7 +33,7 @@ TEST(Verification, V29EulerForceShowsAsQuadrature) {
 }
 
 TEST(Verification, V30CrossAxisRatesShowAsQuadratureOnly) {
-  const Gyro gyro = make_gyro(verification_device());
+  const TrimmedGyro gyro = make_gyro(verification_device());
   const double expected = 5.0 * 5.0 / (2 * drive_frequency(gyro));
   EXPECT_NEAR(expected, 2.2e-4, 0.01e-4);
   // Equal rates shift both modes alike: nothing but the product is left.
@@ -45,12 +45,12 @@ TEST(Verification, V30CrossAxisRatesShowAsQuadratureOnly) {
 }
 
 TEST(Verification, V31RebalanceNullsTheChargeUnderAnyMotion) {
-  const Gyro open = make_gyro(nominal_device());
-  const Gyro closed =
+  const TrimmedGyro open = make_gyro(nominal_device());
+  const TrimmedGyro closed =
       make_gyro(nominal_device({"readout.mode=\"force_rebalance\""}));
   const double feedthrough = closed.device.readout.feedthrough;
   ASSERT_GT(feedthrough, 0);
-  const auto charge = [&](const Gyro& gyro, const CaseMotion& motion) {
+  const auto charge = [&](const TrimmedGyro& gyro, const CaseMotion& motion) {
     const ModalParameters modal = modal_at(gyro, kT0);
     const StaticSolution s =
         static_solution(modal, gyro.loop, feedthrough, motion);
@@ -64,7 +64,7 @@ TEST(Verification, V31RebalanceNullsTheChargeUnderAnyMotion) {
 }
 
 TEST(CentrifugalForce, SoftensTheModeAcrossTheAxisOfRotation) {
-  const Gyro gyro = make_gyro(verification_device());
+  const TrimmedGyro gyro = make_gyro(verification_device());
   const auto solved = [&](const CaseMotion& motion) {
     return beam_signal(gyro, kT0, motion);
   };
@@ -92,7 +92,7 @@ TEST(CentrifugalForce, SoftensTheModeAcrossTheAxisOfRotation) {
 }
 
 TEST(InPhaseRate, IsLinearInAccelerationWithARectifiedPart) {
-  const Gyro gyro = make_gyro(nominal_device());
+  const TrimmedGyro gyro = make_gyro(nominal_device());
   constexpr double g = 9.80665;
   const MountParameters& mount = gyro.device.mount;
   EXPECT_NEAR(in_phase_rate(mount, {g, 0, 0}) / kDegree, 0.02 + 0.002, 1e-12);
@@ -102,7 +102,7 @@ TEST(InPhaseRate, IsLinearInAccelerationWithARectifiedPart) {
 }
 
 TEST(InPhaseRate, ShowsInTheOutputAsARateDoes) {
-  const Gyro gyro = make_gyro(nominal_device());
+  const TrimmedGyro gyro = make_gyro(nominal_device());
   CaseMotion accelerated, turning;
   accelerated.in_phase = turning.z = 0.1 * kDegree;
   EXPECT_NEAR(change_by(gyro, accelerated).rate / change_by(gyro, turning).rate,

@@ -49,9 +49,9 @@ struct Errors {
 };
 
 // At temperatures and rates of a low-discrepancy sequence.
-void compare(const Gyro& gyro, double limit, int count, Errors& errors) {
+void compare(const TrimmedGyro& gyro, double limit, int count, Errors& errors) {
   const StaticMap map(gyro, kCold, kHot, limit);
-  const Gyro other = without_spurious_modes(gyro);
+  const TrimmedGyro other = without_spurious_modes(gyro);
   for (int i = 0; i < count; ++i) {
     const double T =
         kCold + (kHot - kCold) * std::fmod(i * 0.7548776662466927, 1.0);
@@ -106,8 +106,8 @@ TEST(SpuriousMap, WithoutModesBothAreOne) {
 TEST(SpuriousMap, BothUnitsStandAtTheLimitOfTheVoltage) {
   std::vector<std::string> overrides = kUnitC.overrides();
   overrides.emplace_back("drive.voltage_limit_V=0.86");
-  const Gyro gyro = make_gyro(verification_device(overrides));
-  const Gyro other = without_spurious_modes(gyro);
+  const TrimmedGyro gyro = make_gyro(verification_device(overrides));
+  const TrimmedGyro other = without_spurious_modes(gyro);
   const StaticMap map(gyro, kCold, kHot, 0);
   int limited = 0;
   for (double T = 295; T < 310; T += 0.37) {
@@ -123,7 +123,7 @@ TEST(SpuriousMap, BothUnitsStandAtTheLimitOfTheVoltage) {
 }
 
 TEST(SmoothModes, AreThoseOfTheExactParametersWithAnyTrim) {
-  const Gyro gyro = kUnitB.gyro();
+  const TrimmedGyro gyro = kUnitB.gyro();
   const SmoothModes smooth(gyro, kCold - 20, kHot + 40);
   for (double T = kCold - 20; T < kHot + 40; T += 0.317) {
     const ModalParameters have = smooth.at(gyro, {T, T + 3});

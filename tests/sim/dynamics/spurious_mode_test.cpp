@@ -22,7 +22,7 @@
 namespace beamgyro::internal {
 namespace {
 
-double bias_at(const Gyro& gyro, double celsius) {
+double bias_at(const TrimmedGyro& gyro, double celsius) {
   const double T = celsius + kZeroCelsius;
   return electronics_at(gyro, T)
              .output(beam_signal(gyro, T, {}).demodulated)
@@ -30,7 +30,7 @@ double bias_at(const Gyro& gyro, double celsius) {
          kDegree;
 }
 
-BeamSignal signal_at(const Gyro& gyro, double celsius) {
+BeamSignal signal_at(const TrimmedGyro& gyro, double celsius) {
   return beam_signal(gyro, celsius + kZeroCelsius, {});
 }
 
@@ -39,7 +39,8 @@ struct Expected {
 };
 
 TEST(Verification, V60BiasOfUnitA) {
-  const Gyro with = kUnitA.gyro(), without = without_spurious_modes(with);
+  const TrimmedGyro with = kUnitA.gyro(),
+                    without = without_spurious_modes(with);
   for (const Expected& e : {Expected{-1, 1.982311, 1.917280},
                             {5, 1.805547, 1.168323},
                             {7, 1.320872, 0.986590},
@@ -50,7 +51,8 @@ TEST(Verification, V60BiasOfUnitA) {
 }
 
 TEST(Verification, V61BiasOfUnitB) {
-  const Gyro with = kUnitB.gyro(), without = without_spurious_modes(with);
+  const TrimmedGyro with = kUnitB.gyro(),
+                    without = without_spurious_modes(with);
   for (const Expected& e : {Expected{-27.5, 3.720965, 3.770765},
                             {-20, 3.807858, 4.330747},
                             {-17.5, 4.134049, 4.378863},
@@ -61,7 +63,7 @@ TEST(Verification, V61BiasOfUnitB) {
 }
 
 TEST(Verification, V62BiasOfUnitC) {
-  const Gyro gyro = kUnitC.gyro();
+  const TrimmedGyro gyro = kUnitC.gyro();
   for (const auto& [celsius, bias] : {std::pair{28.5, 2.049156},
                                       {30.0, 16.556348},
                                       {30.5, 8.585858},
@@ -84,7 +86,7 @@ class V63Crossing : public testing::TestWithParam<Crossing> {};
 // of these heights.
 TEST_P(V63Crossing, HasTheHeightsOfTheClosedFormAndOfTheSolution) {
   const auto& [unit, height, voltage, lower, upper, digit] = GetParam();
-  const Gyro with = unit.gyro(), without = without_spurious_modes(with);
+  const TrimmedGyro with = unit.gyro(), without = without_spurious_modes(with);
   const ModalParameters modal = modal_at(without, kCalibrationTemperature);
   const double e_x = unit.coupling_drive, e_y = unit.coupling_sense;
   const double eta = unit.loss_factor;
@@ -135,7 +137,7 @@ double uniform(RandomStream& stream, double low, double high) {
 }
 
 TEST(Verification, V64LossesArePositiveForEverySetOfModes) {
-  const Gyro gyro = make_gyro(nominal_device());
+  const TrimmedGyro gyro = make_gyro(nominal_device());
   RandomStream stream(64, 0, 0, kDeviceDrawStream);
   for (int set = 0; set < 10000; ++set) {
     std::vector<SpuriousModeParameters> modes(
@@ -178,7 +180,8 @@ TEST(SpuriousMode, SlopeOfItsStiffnessIsThatOfDifferences) {
             1e-6 * slope.norm());
 }
 
-double bias_of(const Gyro& gyro, double T, const ModalParameters& modal) {
+double bias_of(const TrimmedGyro& gyro, double T,
+               const ModalParameters& modal) {
   return electronics_at(gyro, T)
              .output(beam_signal(gyro, modal, {}).demodulated)
              .rate /
@@ -187,7 +190,7 @@ double bias_of(const Gyro& gyro, double T, const ModalParameters& modal) {
 
 // (13.2) with the age and the slip as part of d_s.
 TEST(SpuriousMode, AgeAndSlipMoveItAsADetuningDoes) {
-  Gyro aged = kUnitA.gyro(), moved = aged;
+  TrimmedGyro aged = kUnitA.gyro(), moved = aged;
   aged.device.spurious_modes[0].drift = 3e-3;
   aged.device.spurious_modes[0].slip = -2e-3;
   moved.device.spurious_modes[0].detuning += 2 * 3e-3 - 0.5 * 2e-3;
@@ -202,7 +205,7 @@ TEST(SpuriousMode, AgeAndSlipMoveItAsADetuningDoes) {
 
 // A crossing at 5 degC comes when the housing has 5 degC, wherever the beam is.
 TEST(SpuriousMode, FollowsTheHousing) {
-  Gyro gyro = kUnitA.gyro(), none = without_spurious_modes(gyro);
+  TrimmedGyro gyro = kUnitA.gyro(), none = without_spurious_modes(gyro);
   gyro.device.spurious_modes[0].follows_housing = true;
   const double beam = 8 + kZeroCelsius;
   const auto bump = [&](double housing) {
@@ -241,7 +244,7 @@ TEST(SpuriousMode, TheStrongestModeThatIsAllowedHasOneLock) {
     SpuriousUnit unit = kUnitA;
     unit.loss_factor = eta;
     unit.coupling_drive = e;
-    const Gyro gyro = unit.gyro();
+    const TrimmedGyro gyro = unit.gyro();
     for (double T = 270; T < 286; T += 0.1) {
       const ModalParameters modal = modal_at(gyro, T);
       const StaticSolution s = static_solution(gyro, modal, {});

@@ -27,7 +27,9 @@ struct SpuriousUnit {
             set("coupling_drive", coupling_drive),
             set("coupling_sense", coupling_sense)};
   }
-  Gyro gyro() const { return make_gyro(verification_device(overrides())); }
+  TrimmedGyro gyro() const {
+    return make_gyro(verification_device(overrides()));
+  }
 };
 
 inline constexpr SpuriousUnit kUnitA{5,    -4.720732e-3, -2.5e-4,

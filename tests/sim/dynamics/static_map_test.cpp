@@ -18,7 +18,7 @@ class StaticMapAccuracy : public testing::TestWithParam<double> {};
 TEST_P(StaticMapAccuracy, AgreesWithTheExactSolutionEverywhere) {
   constexpr double kCold = 228, kHot = 335;  // [K]
   const double limit = GetParam() * kDegree;
-  const Gyro gyro = make_gyro(nominal_device());
+  const TrimmedGyro gyro = make_gyro(nominal_device());
   const StaticMap map(gyro, kCold, kHot, limit);
   double signal = 0, at_rest = 0, frequency = 0, voltage = 0;
   for (int i = 0; i < 4000; ++i) {  // a low-discrepancy sequence
@@ -68,14 +68,15 @@ TEST(StaticMap, ManySamplesAtATimeAreThoseOneByOne) {
 
 // Halving towards a kink would take some twenty pieces for each.
 TEST(StaticMap, PiecesEndAtTheKinksOfTheMaterials) {
-  const Gyro gyro =
+  const TrimmedGyro gyro =
       make_gyro(nominal_device({"bond.glass_transition_degC=41.234",
                                 "mount.glass_transition_degC=-23.456"}));
   EXPECT_LT(StaticMap(gyro, 228, 355, 0).pieces(), 30);
 }
 
 TEST(StaticMap, AVoltageLimitActsAsInTheExactSolution) {
-  const Gyro gyro = make_gyro(nominal_device({"drive.voltage_limit_V=0.9"}));
+  const TrimmedGyro gyro =
+      make_gyro(nominal_device({"drive.voltage_limit_V=0.9"}));
   const StaticMap map(gyro, 233.15, 323.15, 0);
   int held = 0;
   for (double T = 233.15; T <= 323.15; T += 0.5) {

@@ -18,7 +18,7 @@ namespace {
 constexpr double kT0 = kCalibrationTemperature;
 
 struct NominalModes {
-  Gyro gyro = make_gyro(verification_device());
+  TrimmedGyro gyro = make_gyro(verification_device());
   ModalParameters modal = modal_at(gyro, kT0);
   double feedthrough = gyro.device.readout.feedthrough;
 

@@ -93,7 +93,7 @@ class PhaseLoop {
 
  private:
   static constexpr double kCycle = 2 * std::numbers::pi;
-  Gyro gyro_;
+  TrimmedGyro gyro_;
   LoopElectronics loops_;
   double tau_, phase_, shift_;  // [s] [rad2/Hz] [(rad/s)2/Hz]
 };

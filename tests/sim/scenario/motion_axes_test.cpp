@@ -20,8 +20,8 @@ namespace {
 
 constexpr double kGravity = 9.80665;  // [m/s2]
 
-const Gyro& nominal_gyro() {
-  static const Gyro gyro = make_gyro(nominal_device());
+const TrimmedGyro& nominal_gyro() {
+  static const TrimmedGyro gyro = make_gyro(nominal_device());
   return gyro;
 }
 

@@ -14,8 +14,8 @@
 namespace beamgyro::internal::motion_test {
 namespace {
 
-const Gyro& nominal_gyro() {
-  static const Gyro gyro = make_gyro(nominal_device());
+const TrimmedGyro& nominal_gyro() {
+  static const TrimmedGyro gyro = make_gyro(nominal_device());
   return gyro;
 }
 

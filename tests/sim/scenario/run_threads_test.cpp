@@ -25,7 +25,7 @@ DeviceParameters device(std::size_t i) {
 }
 
 Recording run(const ScenarioPlan& scenario, std::size_t i) {
-  const Gyro gyro = make_gyro(device(i));
+  const TrimmedGyro gyro = make_gyro(device(i));
   const RunKey key{.device = static_cast<std::uint32_t>(i), .run = 0};
   return simulated(scenario, gyro, key);
 }
@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(Fidelities, RunThreads,
                                          Fidelity::kCarrier));
 
 TEST(PreparedGyro, ServesManyRunsLikeTheDeviceItself) {
-  const Gyro gyro = make_gyro(device(3));
+  const TrimmedGyro gyro = make_gyro(device(3));
   for (const char* ambient : {"20", "60"}) {
     ScenarioPlan scenario = scenario_from(
         kRate, std::string("[ambient]\nconstant_degC = ") + ambient + "\n",

@@ -20,8 +20,9 @@
 namespace beamgyro::internal::timeline_test {
 namespace {
 
-const Gyro& fine_gyro() {
-  static const Gyro gyro = make_gyro(nominal_device({"readout.adc_bits=32"}));
+const TrimmedGyro& fine_gyro() {
+  static const TrimmedGyro gyro =
+      make_gyro(nominal_device({"readout.adc_bits=32"}));
   return gyro;
 }
 
@@ -186,8 +187,8 @@ std::string difference(const Recording& a, const Recording& b) {
   return "";
 }
 
-const Gyro& finest_gyro() {
-  static const Gyro gyro = make_gyro(nominal_device(
+const TrimmedGyro& finest_gyro() {
+  static const TrimmedGyro gyro = make_gyro(nominal_device(
       {"readout.adc_bits=32", "readout.drive_frequency_resolution_Hz=1e-10",
        "readout.drive_voltage_resolution_V=1e-10",
        "readout.quadrature_resolution_deg_per_s=1e-10",
