@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 #include "include/beamgyro/scenario.h"
 #include "sim/dynamics/gyro.h"
 #include "sim/scenario/simulation_input.h"
+#include "sim/stepper/stepper_model.h"
 
 namespace beamgyro::internal {
 
@@ -26,16 +28,37 @@ class UnitGyro {
   mutable std::optional<TrimmedGyro> gyro_;
 };
 
+/// What the steppers of a device share, made when it is first asked for.
+class UnitModel {
+ public:
+  /// Throws as make_gyro(). Any thread may call it.
+  const std::shared_ptr<const StepperModel>& of(const TrimmedGyro& gyro) const {
+    std::call_once(once_, [&] { model_ = stepper_model(gyro); });
+    return model_;
+  }
+
+ private:
+  mutable std::once_flag once_;
+  mutable std::shared_ptr<const StepperModel> model_;
+};
+
 struct DeviceState {
   std::string text, name;
   std::vector<std::string> overrides;
   DeviceParameters device;
   UnitGyro gyro = {};
+  UnitModel model = {};
 };
 
 /// The solved beam and trims of a device. Throws as make_gyro().
 inline const TrimmedGyro& gyro_of(const Device& device) {
   return device.content().gyro.of(device.content().device);
+}
+
+/// What the steppers of a device share. Throws as make_gyro().
+inline const std::shared_ptr<const StepperModel>& stepper_model_of(
+    const Device& device) {
+  return device.content().model.of(gyro_of(device));
 }
 
 struct ScenarioState {

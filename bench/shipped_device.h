@@ -7,9 +7,10 @@
 
 namespace beamgyro::internal {
 
-inline DeviceParameters shipped_device() {
+/// scenarios/devices/`name`.toml.
+inline DeviceParameters shipped_device(const std::string& name = "nominal") {
   const ConfigDocument document = ConfigDocument::read(
-      std::string(BEAMGYRO_SCENARIOS) + "/devices/nominal.toml");
+      std::string(BEAMGYRO_SCENARIOS) + "/devices/" + name + ".toml");
   return read_device(document);
 }
 

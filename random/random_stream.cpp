@@ -185,6 +185,17 @@ std::uint64_t RandomStream::next_word() {
   return words[0];
 }
 
+std::uint64_t RandomStream::position() const {
+  return 2 * next_block_ - (has_spare_ ? 1 : 0);
+}
+
+void RandomStream::seek(std::uint64_t position) {
+  if (position > 2 * kBlocks) throw_used_up();
+  next_block_ = position / 2;
+  has_spare_ = false;
+  if (position % 2 == 1) next_word();
+}
+
 double RandomStream::uniform() { return number(next_word(), 0.0); }
 
 double RandomStream::normal() { return quantile(number(next_word(), 0.5)); }

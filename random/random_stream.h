@@ -80,6 +80,21 @@ class RandomStream {
   /// last bit, but faster.
   void fill_normal(std::span<double> values);
 
+  /// Returns how many numbers have been drawn.
+  std::uint64_t position() const;
+
+  /// Goes to where `position` numbers have been drawn, forwards or backwards.
+  /// Throws std::runtime_error beyond the end of the stream.
+  void seek(std::uint64_t position);
+
+  /// Takes the position; see StateArchive of sim/numerics.
+  template <class Archive>
+  void archive(Archive& archive) {
+    std::uint64_t drawn = position();
+    archive(drawn);
+    if (archive.is_reading()) seek(drawn);
+  }
+
  private:
   std::array<std::uint64_t, 2> next_block();
 

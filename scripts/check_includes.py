@@ -14,7 +14,8 @@ import sys
 DATASET = ["dataset/files", "dataset/recording", "dataset/netcdf",
            "dataset/log", "dataset/set/shard", "dataset/set"]
 SIM = ["sim/numerics", "sim/thermal", "sim/signal", "sim/memory",
-       "sim/device", "sim/dynamics", "sim/scenario", "sim/campaign"]
+       "sim/device", "sim/dynamics", "sim/stepper", "sim/scenario",
+       "sim/campaign"]
 COMPENSATION = [f"compensation/{room}" for room in
                 ("inputs", "firmware", "models", "uncertainty", "rows",
                  "network", "methods", "compensator", "scoring", "training", "export")]

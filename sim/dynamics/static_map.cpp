@@ -169,6 +169,65 @@ Complex StaticMap::without_spurious(const Piece& piece, double T) const {
   return std::min(1.0, voltage_limit_ / v(2)) * Complex(v(0), v(1));
 }
 
+StaticMap::Signals StaticMap::signals_of(const Piece& piece, double T,
+                                         double rate,
+                                         const Eigen::Vector4d& at_rate,
+                                         const Eigen::Vector4d& at_rest,
+                                         Complex without) const {
+  assert(std::abs(rate) <= rate_limit_ * (1 + 1e-9));
+  const BeamSignal rest = limited(at_rest);
+  Signals signals = {rate == 0 ? rest : limited(at_rate), rest.demodulated,
+                     rest.demodulated};
+  if (without_)
+    signals.without_spurious =
+        rest.amplitude_locked ? without : without_spurious(piece, T);
+  return signals;
+}
+
+// channels() of one sample without memory, in the same order of sums and so to
+// the last bit, but the four channels at a time.
+StaticMap::Signals StaticMap::single(const Piece& piece, double T,
+                                     double rate) const {
+  using Array4 = Eigen::Map<const Eigen::Array4d>;
+  std::array<double, kTemperatureNodes> over_T;
+  const double x = (2 * T - piece.low - piece.high) / (piece.high - piece.low);
+  over_T[0] = 1;
+  over_T[1] = x;
+  for (std::size_t j = 2; j < over_T.size(); ++j)
+    over_T[j] = 2 * x * over_T[j - 1] - over_T[j - 2];
+  Complex without;
+  if (without_) {
+    Eigen::Array2d value = piece.without_spurious.col(0).head<2>();
+    for (std::size_t j = 1; j < over_T.size(); ++j)
+      value += piece.without_spurious.col(static_cast<Eigen::Index>(j))
+                   .head<2>()
+                   .array() *
+               over_T[j];
+    without = {value(0), value(1)};
+  }
+  const double r = rate_degree_ > 0 ? rate / rate_limit_ : 0;
+  const Eigen::Index rows = piece.coefficients.rows();
+  const auto of_degree = [&](int k) {
+    const double* const first = piece.coefficients.data() + kChannels * k;
+    Eigen::Array4d value = Array4(first);
+    for (std::size_t j = 1; j < over_T.size(); ++j)
+      value += Array4(first + static_cast<Eigen::Index>(j) * rows) * over_T[j];
+    return value;
+  };
+  Eigen::Array4d at_rate = of_degree(0), at_rest = at_rate;
+  double basis = r, before = 1;  // T_k(r), T_k-1(r)
+  for (int k = 1; k <= rate_degree_; ++k) {
+    const Eigen::Array4d value = of_degree(k);
+    at_rate += basis * value;
+    if (k % 2 == 0) at_rest += (k % 4 == 0 ? 1.0 : -1.0) * value;
+    const double next = 2 * r * basis - before;
+    before = basis;
+    basis = next;
+  }
+  return signals_of(piece, T, rate, at_rate.matrix(), at_rest.matrix(),
+                    without);
+}
+
 StaticMap::Signals StaticMap::at(double T, double rate,
                                  const MemoryState& memory) const {
   Signals signals;
@@ -190,23 +249,23 @@ void StaticMap::sample(std::span<const double> T, std::span<const double> rate,
            (&piece == &pieces_.front() || T[first + count] >= piece.low) &&
            (last || T[first + count] < piece.high))
       ++count;
+    assert(T[first] > pieces_.front().low - 1e-6 &&
+           T[first] < pieces_.back().high + 1e-6);
+    if (count == 1 && piece.memory.size() == 1) {
+      signals[first] = single(piece, T[first], rate[first]);
+      continue;
+    }
     const Channels c =
         channels(piece, T.subspan(first, count), rate.subspan(first, count),
                  memory.empty() ? memory : memory.subspan(first, count));
     for (std::size_t i = 0; i < count; ++i) {
-      assert(T[first + i] > pieces_.front().low - 1e-6 &&
-             T[first + i] < pieces_.back().high + 1e-6);
-      assert(std::abs(rate[first + i]) <= rate_limit_ * (1 + 1e-9));
       const auto row = static_cast<Eigen::Index>(i);
-      const BeamSignal at_rest = limited(c.at_rest.row(row));
-      signals[first + i] = {
-          rate[first + i] == 0 ? at_rest : limited(c.at_rate.row(row)),
-          at_rest.demodulated, at_rest.demodulated};
-      if (!without_) continue;
-      signals[first + i].without_spurious =
-          at_rest.amplitude_locked
-              ? Complex(c.without_spurious(row, 0), c.without_spurious(row, 1))
-              : without_spurious(piece, T[first + i]);
+      const Complex without = without_ ? Complex(c.without_spurious(row, 0),
+                                                 c.without_spurious(row, 1))
+                                       : Complex();
+      signals[first + i] =
+          signals_of(piece, T[first + i], rate[first + i], c.at_rate.row(row),
+                     c.at_rest.row(row), without);
     }
   }
 }

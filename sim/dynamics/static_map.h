@@ -141,6 +141,11 @@ class StaticMap {
                     std::span<const MemoryState> memory) const;
   Lanes<Eigen::Dynamic> memory_basis(const MemoryBox& box, int axis,
                                      std::span<const MemoryState> memory) const;
+  Signals single(const Piece& piece, double T, double rate) const;
+  Signals signals_of(const Piece& piece, double T, double rate,
+                     const Eigen::Vector4d& at_rate,
+                     const Eigen::Vector4d& at_rest,
+                     Complex without_spurious) const;
   BeamSignal limited(const Eigen::Vector4d& channels) const;
   std::complex<double> without_spurious(const Piece& piece, double T) const;
   const Piece& piece_at(double T) const;

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "sim/memory/memory_parameters.h"
+#include "sim/numerics/state_archive.h"
 
 namespace beamgyro::internal {
 
@@ -39,6 +40,8 @@ class BondRelaxation {
 
   double fictive_temperature() const;  // T_f [K]
   const std::array<double, kModes>& modes() const { return modes_; }
+
+  void archive(StateArchive& archive) { archive(modes_); }
 
   /// tau_s at T [K] with the present T_f [s].
   double time_constant(double T) const;

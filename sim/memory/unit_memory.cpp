@@ -153,6 +153,12 @@ void UnitMemory::advance_patches(double from, double to, double duration) {
   if (ageing_) ageing_->advance(from, to, duration);
 }
 
+void UnitMemory::archive(StateArchive& archive) {
+  if (relaxation_) archive(*relaxation_);
+  if (hysteresis_) archive(*hysteresis_);
+  if (ageing_) archive(*ageing_);
+}
+
 void UnitMemory::push_beam(double T) {
   if (hysteresis_) hysteresis_->push(T);
 }

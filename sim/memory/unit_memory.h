@@ -7,6 +7,7 @@
 #include "sim/memory/bond_relaxation.h"
 #include "sim/memory/memory_parameters.h"
 #include "sim/numerics/piecewise_linear.h"
+#include "sim/numerics/state_archive.h"
 
 namespace beamgyro::internal {
 
@@ -30,6 +31,8 @@ class Ageing {
   /// Advances by `duration` [s] while T goes from `from` to `to` [K] along a
   /// straight line.
   void advance(double from, double to, double duration);
+
+  void archive(StateArchive& archive) { archive(age_); }
 
   double effective_age() const { return age_; }  // t_e [s]
   double decades() const;  // log10((t_e + t_1)/(t_trim + t_1))
@@ -58,6 +61,8 @@ class PlayOperators {
   void push(double T);
 
   const States& states() const { return states_; }
+
+  void archive(StateArchive& archive) { archive(temperature_, states_); }
 
   /// h [K] after a monotone move of T from where `states` were left to `T`.
   double value(const States& states, double T) const;
@@ -109,6 +114,8 @@ class UnitMemory {
   }
   const std::optional<PlayOperators>& hysteresis() const { return hysteresis_; }
   double glass_transition() const { return glass_transition_; }
+
+  void archive(StateArchive& archive);
 
  private:
   void bring(double from, double to);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "random/random_stream.h"
+#include "sim/device/case_axis.h"
 #include "sim/numerics/piecewise_linear.h"
 #include "sim/signal/output_filter.h"
 
@@ -28,20 +28,6 @@ using RateProfile = std::variant<PiecewiseLinear, SineSignal, RandomRate>;
 /// Returns whether a profile or a signal ever differs from zero.
 bool moves(const RateProfile& profile);
 bool moves(const Signal& signal);
-
-/// The axes of the case: rates about z, the input axis, and about x and y, then
-/// accelerations.
-enum CaseAxis : std::size_t {
-  kRateZ,
-  kRateX,
-  kRateY,
-  kAccelerationX,
-  kAccelerationY,
-  kAccelerationZ,
-  kCaseAxisCount
-};
-template <class T>
-using PerAxis = std::array<T, kCaseAxisCount>;
 
 /// How a motion about or along an axis is named.
 struct AxisNames {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "random/random_stream.h"
+#include "sim/numerics/state_archive.h"
 
 namespace beamgyro::internal {
 
@@ -53,6 +54,8 @@ class FlickerNoise {
 
   /// Adds the noise of the next rate.size() samples.
   void add_next(std::span<double> rate);
+
+  void archive(StateArchive& archive) { archive(stream_, state_); }
 
  private:
   RandomStream stream_;

@@ -140,6 +140,12 @@ void RateNoise::add_next(std::span<double> rate) {
   }
 }
 
+// The walk since the trim follows from the age.
+void RateNoise::archive(StateArchive& archive) {
+  archive(walk_, white_stream_, walk_stream_, aged_samples_);
+  if (flicker_) archive(*flicker_);
+}
+
 double recovered_transient(const NoiseParameters& parameters, double off_time) {
   return -std::expm1(-off_time / parameters.turn_on_recovery);
 }

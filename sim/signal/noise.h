@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "random/random_stream.h"
+#include "sim/numerics/state_archive.h"
 #include "sim/signal/flicker.h"
 
 namespace beamgyro::internal {
@@ -84,6 +85,8 @@ class RateNoise {
 
   /// Adds the noise of the next rate.size() samples. Throws as WalkSinceTrim.
   void add_next(std::span<double> rate);
+
+  void archive(StateArchive& archive);
 
  private:
   void add_walk(std::span<double> rate);

@@ -115,6 +115,22 @@ TEST(RandomStream, FillNormalGivesTheNumbersOfNormalHoweverCut) {
   }
 }
 
+TEST(RandomStream, SeekGoesToAnyNumber) {
+  const auto all = normals(100, 7, 0, 3);
+  RandomStream stream(7, 0, 3, kPurpose);
+  for (const std::uint64_t position : {0u, 1u, 2u, 57u, 58u, 13u, 99u, 0u}) {
+    stream.seek(position);
+    EXPECT_EQ(stream.position(), position);
+    EXPECT_EQ(stream.normal(), all[position]);
+    EXPECT_EQ(stream.position(), position + 1);
+  }
+  const std::uint64_t end = std::uint64_t{1} << 33;
+  stream.seek(end);
+  EXPECT_EQ(stream.position(), end);
+  EXPECT_THROW(stream.normal(), std::runtime_error);
+  EXPECT_THROW(stream.seek(end + 1), std::runtime_error);
+}
+
 TEST(RandomStream, DoesNotDependOnStreamsDrawnBesideIt) {
   const auto alone = normals(1000, 7, 0, 3);
   RandomStream first(7, 0, 3, kPurpose), second(7, 0, 4, kPurpose);

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: MIT
+#include "include/beamgyro/gyro.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "api/program_version.h"
+#include "api/reported_progress.h"
+#include "api/scenario_state.h"
+#include "config/units.h"
+#include "dataset/files/sha256.h"
+#include "dataset/recording/signals.h"
+#include "sim/stepper/gyro_stepper.h"
+
+namespace beamgyro {
+namespace {
+
+using internal::kDegree;
+using internal::kZeroCelsius;
+
+internal::StepInputs si_inputs(const GyroInputs& inputs) {
+  internal::StepInputs si;
+  si.motion[internal::kRateZ] = inputs.rate * kDegree;
+  si.motion[internal::kRateX] = inputs.cross_rate_x * kDegree;
+  si.motion[internal::kRateY] = inputs.cross_rate_y * kDegree;
+  si.motion[internal::kAccelerationX] = inputs.acceleration_x;
+  si.motion[internal::kAccelerationY] = inputs.acceleration_y;
+  si.motion[internal::kAccelerationZ] = inputs.acceleration_z;
+  si.ambient = inputs.ambient_temperature + kZeroCelsius;
+  return si;
+}
+
+std::optional<internal::PiecewiseLinear> history_of(const GyroStart& start) {
+  if (start.history.empty()) return {};
+  std::vector<double> time, temperature;
+  for (const auto& [t, degC] : start.history) {
+    time.push_back(t);
+    temperature.push_back(degC + kZeroCelsius);
+  }
+  if (time.back() != 0)
+    throw std::invalid_argument(fmt::format(
+        "history ends at {:g} s; expected its last point at 0 s, the start",
+        time.back()));
+  return internal::PiecewiseLinear(std::move(time), std::move(temperature));
+}
+
+internal::StepperStart si_start(const GyroStart& start) {
+  if (start.fidelity != "quasistatic")
+    throw std::invalid_argument(
+        fmt::format("fidelity is \"{}\"; expected \"quasistatic\", the one in "
+                    "which a gyro can be stepped",
+                    start.fidelity));
+  internal::StepperStart si;
+  si.seed = start.seed;
+  si.noise = start.noise;
+  si.noise_rate = start.noise_rate_Hz;
+  si.stirred = start.stirred;
+  si.inputs = si_inputs(start.inputs);
+  si.powered = start.inputs.powered;
+  if (start.temperature_degC)
+    si.temperatures =
+        internal::NodeVector::Constant(*start.temperature_degC + kZeroCelsius);
+  if (start.age_hours) si.age = *start.age_hours * 3600;
+  si.history = history_of(start);
+  return si;
+}
+
+GyroSample shown(const internal::StepSample& s) {
+  GyroSample sample{.time = s.time,
+                    .output = s.output,
+                    .rate = s.rate,
+                    .temperature = s.temperature,
+                    .drive_frequency = s.drive_frequency,
+                    .drive_voltage = s.drive_voltage,
+                    .quadrature = s.quadrature};
+  if (!s.powered) {
+    sample.status = kUnpowered;
+    return sample;
+  }
+  if (s.saturated) sample.status |= kOutputSaturated;
+  if (!s.locked) sample.status |= kLoopNotLocked;
+  return sample;
+}
+
+GyroTruth truth_of(const internal::StepSample& s) {
+  const auto& node = s.true_node_temperature;
+  return {.true_rate = s.true_rate,
+          .true_bias = s.true_bias,
+          .true_spurious_bias = s.true_spurious_bias,
+          .true_drive_frequency = s.true_drive_frequency,
+          .true_cross_rate_x = s.true_cross_rate_x,
+          .true_cross_rate_y = s.true_cross_rate_y,
+          .true_acceleration_x = s.true_acceleration_x,
+          .true_acceleration_y = s.true_acceleration_y,
+          .true_acceleration_z = s.true_acceleration_z,
+          .true_fictive_temperature = s.true_fictive_temperature,
+          .true_hysteresis = s.true_hysteresis,
+          .true_beam_temperature = node[internal::kBeam],
+          .true_pzt_temperature = node[internal::kPzt],
+          .true_mount_temperature = node[internal::kMount],
+          .true_housing_temperature = node[internal::kHousing],
+          .true_board_temperature = node[internal::kBoard],
+          .true_sensor_temperature = node[internal::kSensor],
+          .true_ambient_temperature = s.true_ambient_temperature};
+}
+
+// A signal of samples in a recording.
+struct SampleSignal {
+  const char* name;
+  double GyroSample::*measured = nullptr;
+  double GyroTruth::*truth = nullptr;
+  bool is_motion = false;  // has no column where it is 0 all the time
+};
+constexpr std::array kSampleSignals = {
+    SampleSignal{"output", &GyroSample::output},
+    SampleSignal{"rate", &GyroSample::rate},
+    SampleSignal{"temperature", &GyroSample::temperature},
+    SampleSignal{"drive_frequency", &GyroSample::drive_frequency},
+    SampleSignal{"drive_voltage", &GyroSample::drive_voltage},
+    SampleSignal{"quadrature", &GyroSample::quadrature},
+    SampleSignal{"true_rate", {}, &GyroTruth::true_rate},
+    SampleSignal{"true_bias", {}, &GyroTruth::true_bias},
+    SampleSignal{"true_spurious_bias", {}, &GyroTruth::true_spurious_bias},
+    SampleSignal{"true_drive_frequency", {}, &GyroTruth::true_drive_frequency},
+    SampleSignal{"true_cross_rate_x", {}, &GyroTruth::true_cross_rate_x, true},
+    SampleSignal{"true_cross_rate_y", {}, &GyroTruth::true_cross_rate_y, true},
+    SampleSignal{
+        "true_acceleration_x", {}, &GyroTruth::true_acceleration_x, true},
+    SampleSignal{
+        "true_acceleration_y", {}, &GyroTruth::true_acceleration_y, true},
+    SampleSignal{
+        "true_acceleration_z", {}, &GyroTruth::true_acceleration_z, true},
+    SampleSignal{
+        "true_fictive_temperature", {}, &GyroTruth::true_fictive_temperature},
+    SampleSignal{"true_hysteresis", {}, &GyroTruth::true_hysteresis},
+    SampleSignal{
+        "true_beam_temperature", {}, &GyroTruth::true_beam_temperature},
+    SampleSignal{"true_pzt_temperature", {}, &GyroTruth::true_pzt_temperature},
+    SampleSignal{
+        "true_mount_temperature", {}, &GyroTruth::true_mount_temperature},
+    SampleSignal{
+        "true_housing_temperature", {}, &GyroTruth::true_housing_temperature},
+    SampleSignal{
+        "true_board_temperature", {}, &GyroTruth::true_board_temperature},
+    SampleSignal{
+        "true_sensor_temperature", {}, &GyroTruth::true_sensor_temperature},
+    SampleSignal{
+        "true_ambient_temperature", {}, &GyroTruth::true_ambient_temperature}};
+
+// What a gyro does not have, and motions that never move, have no column.
+void drop_absent(Recording& recording) {
+  for (std::size_t i = kSampleSignals.size(); i-- > 0;) {
+    const std::vector<double>& values = recording.columns[i].values;
+    const SampleSignal& signal = kSampleSignals[i];
+    const bool is_absent =
+        (signal.truth != nullptr && std::isnan(values.front())) ||
+        (signal.is_motion &&
+         std::ranges::all_of(values, [](double v) { return v == 0; }));
+    if (is_absent)
+      recording.columns.erase(recording.columns.begin() +
+                              static_cast<std::ptrdiff_t>(i));
+  }
+}
+
+// What the bytes of a state belong to.
+std::string state_key(const Device& device, const GyroStart& start) {
+  std::string text = device.text();
+  for (const std::string& change : device.overrides()) text += "\n" + change;
+  const GyroInputs& in = start.inputs;
+  text +=
+      fmt::format("\n{} {} {} {} {} {} {} {} {} {} {} {} {} {}", start.seed,
+                  start.noise, start.noise_rate_Hz, start.stirred, in.rate,
+                  in.cross_rate_x, in.cross_rate_y, in.acceleration_x,
+                  in.acceleration_y, in.acceleration_z, in.ambient_temperature,
+                  in.powered, start.temperature_degC.value_or(std::nan("")),
+                  start.age_hours.value_or(std::nan("")));
+  for (const auto& [t, degC] : start.history)
+    text += fmt::format(" {} {}", t, degC);
+  return fmt::format("beamgyro gyro {} {}\n", internal::kGitRevision,
+                     internal::sha256(text));
+}
+
+}  // namespace
+
+struct Gyro::Parts {
+  Device device;
+  GyroStart start;
+  internal::GyroStepper stepper;
+  GyroSample sample = {};
+  GyroTruth truth = {};
+
+  void take() {
+    sample = shown(stepper.now());
+    truth = truth_of(stepper.now());
+  }
+};
+
+Gyro::Gyro(const Device& device, const GyroStart& start)
+    : parts_(new Parts{device, start,
+                       internal::GyroStepper(internal::stepper_model_of(device),
+                                             si_start(start))}) {
+  parts_->take();
+}
+Gyro::Gyro(const Gyro& other) : parts_(new Parts(*other.parts_)) {}
+Gyro::Gyro(Gyro&& other) noexcept = default;
+Gyro& Gyro::operator=(Gyro other) noexcept {
+  std::swap(parts_, other.parts_);
+  return *this;
+}
+Gyro::~Gyro() = default;
+
+const GyroSample& Gyro::now() const { return parts_->sample; }
+const GyroTruth& Gyro::truth() const { return parts_->truth; }
+const Device& Gyro::device() const { return parts_->device; }
+const GyroStart& Gyro::start() const { return parts_->start; }
+
+const GyroSample& Gyro::step(double duration, const GyroInputs& held) {
+  return step(duration, held, held);
+}
+
+const GyroSample& Gyro::step(double duration, const GyroInputs& from,
+                             const GyroInputs& to) {
+  parts_->stepper.step(duration, si_inputs(from), si_inputs(to), to.powered);
+  parts_->take();
+  return parts_->sample;
+}
+
+Recording Gyro::advance(double duration, std::span<const GyroInputs> inputs,
+                        GyroSteps steps, const Progress& progress) {
+  constexpr std::size_t kReported = 16384;  // steps
+  if (inputs.empty())
+    throw std::invalid_argument("no inputs; expected one for each step");
+  Parts next = *parts_;
+  Recording recording;
+  for (const SampleSignal& signal : kSampleSignals) {
+    recording.columns.push_back(internal::column_of(signal.name, {}));
+    recording.columns.back().values.reserve(inputs.size());
+  }
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    try {
+      const internal::StepInputs to = si_inputs(inputs[k]);
+      next.stepper.step(
+          duration, steps == GyroSteps::kLinear ? next.stepper.inputs() : to,
+          to, inputs[k].powered);
+      next.take();
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("step {}: {}", k, error.what()));
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(fmt::format("step {}: {}", k, error.what()));
+    }
+    recording.time.push_back(next.sample.time);
+    recording.status.push_back(next.sample.status);
+    for (std::size_t i = 0; i < kSampleSignals.size(); ++i) {
+      const SampleSignal& signal = kSampleSignals[i];
+      recording.columns[i].values.push_back(signal.measured != nullptr
+                                                ? next.sample.*signal.measured
+                                                : next.truth.*signal.truth);
+    }
+    if ((k + 1) % kReported == 0 || k + 1 == inputs.size())
+      internal::report(progress, static_cast<double>(k + 1) /
+                                     static_cast<double>(inputs.size()));
+  }
+  drop_absent(recording);
+  recording.fidelity = parts_->start.fidelity;
+  recording.seed = parts_->start.seed;
+  recording.history = internal::history_line("advance");
+  recording.program_version = internal::kProgramVersion;
+  recording.git_revision = internal::kGitRevision;
+  recording.device_text = parts_->device.text();
+  recording.overrides_text =
+      fmt::format("{}", fmt::join(parts_->device.overrides(), "\n"));
+  parts_ = std::make_unique<Parts>(std::move(next));
+  return recording;
+}
+
+std::string Gyro::state() const {
+  return state_key(parts_->device, parts_->start) + parts_->stepper.state();
+}
+
+void Gyro::restore(std::string_view state) {
+  const std::string key = state_key(parts_->device, parts_->start);
+  if (!state.starts_with(key))
+    throw std::invalid_argument(
+        "the bytes are no state of this device, start and program; expected "
+        "those that state() has returned for them");
+  parts_->stepper.restore(state.substr(key.size()));
+  parts_->take();
+}
+
+}  // namespace beamgyro

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// A gyro inside another simulation: rates and temperatures go in, step by
+/// step, and what it shows comes out.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "beamgyro/device.h"
+#include "beamgyro/progress.h"
+#include "beamgyro/recording.h"
+
+namespace beamgyro {
+
+/// What acts on a gyro at one moment.
+struct GyroInputs {
+  double rate = 0;  ///< about the input axis [degree/s]
+  double cross_rate_x = 0, cross_rate_y = 0;  ///< [degree/s]
+  double acceleration_x = 0, acceleration_y = 0,
+         acceleration_z = 0;        ///< [m/s2]
+  double ambient_temperature = 25;  ///< [degC]
+  bool powered = true;  ///< over the step that these inputs are given for
+
+  friend bool operator==(const GyroInputs&, const GyroInputs&) = default;
+};
+
+/// How a gyro begins.
+struct GyroStart {
+  std::string fidelity = "quasistatic";  ///< the only one so far
+  std::uint64_t seed = 0;                ///< of its noise
+  bool noise = true;
+  /// The noise changes at this rate [Hz] and holds in between, so steps may be
+  /// cut anywhere: at the output rate of a scenario it is that of its run. 0:
+  /// one over the duration of the first step.
+  double noise_rate_Hz = 0;
+  bool stirred = false;    ///< whether a fan moves the air of a chamber
+  GyroInputs inputs = {};  ///< what acts at the start, and has for long
+  /// Of every part of the gyro [degC]; none: the ambient temperature.
+  std::optional<double> temperature_degC = {};
+  std::optional<double> age_hours = {};  ///< since the factory trim
+  /// Times [s], the last 0, and temperatures [degC] before the start, of a gyro
+  /// that remembers.
+  std::vector<std::pair<double, double>> history = {};
+};
+
+/// What a gyro shows at one moment, under the names and in the units of a
+/// recording (docs/reference/recording.md). NaN: what is measured without
+/// power, and what this gyro does not have.
+struct GyroSample {
+  double time = 0;  ///< [s] since the start
+  double output = 0, rate = 0, temperature = 0;
+  double drive_frequency = 0, drive_voltage = 0, quadrature = 0;
+  std::uint8_t status = 0;  ///< StatusBit mask
+};
+
+/// The truth at the same moment, which no gyro shows.
+struct GyroTruth {
+  double true_rate = 0, true_bias = 0, true_spurious_bias = 0;
+  double true_drive_frequency = 0;
+  double true_cross_rate_x = 0, true_cross_rate_y = 0;
+  double true_acceleration_x = 0, true_acceleration_y = 0;
+  double true_acceleration_z = 0;
+  double true_fictive_temperature = 0, true_hysteresis = 0;
+  double true_beam_temperature = 0, true_pzt_temperature = 0;
+  double true_mount_temperature = 0, true_housing_temperature = 0;
+  double true_board_temperature = 0, true_sensor_temperature = 0;
+  double true_ambient_temperature = 0;
+};
+
+/// How inputs of a series act: each is held over its step, or reached at its
+/// end along a straight line from the one before.
+enum class GyroSteps { kHeld, kLinear };
+
+/// One gyro that goes on step by step without knowing what comes later: the
+/// quasi-static model of simulate(). Replayed on the samples of a scenario made
+/// of straight lines it shows what the run shows (docs/guide/in_the_loop.md). A
+/// copy is a snapshot. Different objects may be used in different threads, one
+/// object in one thread at a time.
+///
+/// Whatever a call throws, the gyro is as it was before.
+class Gyro {
+ public:
+  /// Throws std::invalid_argument for a value of `start` that is out of range,
+  /// and std::runtime_error for a device whose drive loop cannot lock.
+  explicit Gyro(const Device& device, const GyroStart& start = {});
+  Gyro(const Gyro& other);
+  Gyro(Gyro&& other) noexcept;
+  Gyro& operator=(Gyro other) noexcept;
+  ~Gyro();
+
+  /// The sample at the end of the last step, or at the start. Where the rate of
+  /// the noise is that of the first step the sample at the start has no noise.
+  const GyroSample& now() const;
+  const GyroTruth& truth() const;
+
+  /// Advances by `duration` [s], above 0 and at most 1e5, with held inputs, and
+  /// returns now(). Throws std::invalid_argument for a value that is not finite
+  /// or out of range, std::runtime_error with the time for a gyro that cannot
+  /// go on.
+  const GyroSample& step(double duration, const GyroInputs& held);
+
+  /// The same with inputs that go from one value to another along straight
+  /// lines. The power is that of `to`, over the whole step.
+  const GyroSample& step(double duration, const GyroInputs& from,
+                         const GyroInputs& to);
+
+  /// As many calls of step() with equal durations [s] as there are inputs, to
+  /// the last bit. Returns the samples as a recording, which needs `duration`
+  /// to be no shorter than 1e-6 s. Throws as step(), with the number of the
+  /// step, and Cancelled; the gyro is as it was before.
+  Recording advance(double duration, std::span<const GyroInputs> inputs,
+                    GyroSteps steps = GyroSteps::kHeld,
+                    const Progress& progress = {});
+
+  /// Returns the state as bytes, for restore() in another process with the same
+  /// program, device and start.
+  std::string state() const;
+  /// Goes back to a state(). Throws std::invalid_argument for bytes that are
+  /// none of this program, device and start.
+  void restore(std::string_view state);
+
+  const Device& device() const;
+  const GyroStart& start() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace beamgyro
