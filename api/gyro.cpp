@@ -2,7 +2,6 @@
 #include "include/beamgyro/gyro.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -15,6 +14,7 @@
 #include "config/units.h"
 #include "dataset/files/sha256.h"
 #include "dataset/recording/signals.h"
+#include "parallel/work_queue.h"
 #include "sim/stepper/gyro_stepper.h"
 
 namespace beamgyro {
@@ -50,12 +50,15 @@ std::optional<internal::PiecewiseLinear> history_of(const GyroStart& start) {
 }
 
 internal::StepperStart si_start(const GyroStart& start) {
-  if (start.fidelity != "quasistatic")
-    throw std::invalid_argument(
-        fmt::format("fidelity is \"{}\"; expected \"quasistatic\", the one in "
-                    "which a gyro can be stepped",
-                    start.fidelity));
   internal::StepperStart si;
+  if (start.fidelity == "envelope") {
+    si.fidelity = internal::StepFidelity::kEnvelope;
+  } else if (start.fidelity != "quasistatic") {
+    throw std::invalid_argument(
+        fmt::format("fidelity is \"{}\"; expected \"quasistatic\" or "
+                    "\"envelope\", in which a gyro can be stepped",
+                    start.fidelity));
+  }
   si.seed = start.seed;
   si.noise = start.noise;
   si.noise_rate = start.noise_rate_Hz;
@@ -167,6 +170,26 @@ void drop_absent(Recording& recording) {
   }
 }
 
+void take_inputs(internal::StateArchive& archive, GyroInputs& inputs) {
+  archive(inputs.rate, inputs.cross_rate_x, inputs.cross_rate_y,
+          inputs.acceleration_x, inputs.acceleration_y, inputs.acceleration_z,
+          inputs.ambient_temperature, inputs.powered);
+}
+
+// Puts the number of a step or a gyro before the words of an error.
+template <class Work>
+void named_by(const char* what, std::size_t number, const Work& work) {
+  try {
+    work();
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(
+        fmt::format("{} {}: {}", what, number, error.what()));
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(
+        fmt::format("{} {}: {}", what, number, error.what()));
+  }
+}
+
 // What the bytes of a state belong to.
 std::string state_key(const Device& device, const GyroStart& start) {
   std::string text = device.text();
@@ -191,10 +214,12 @@ struct Gyro::Parts {
   Device device;
   GyroStart start;
   internal::GyroStepper stepper;
+  GyroInputs last;  // at the end of the last step
   GyroSample sample = {};
   GyroTruth truth = {};
 
-  void take() {
+  void take(const GyroInputs& inputs) {
+    last = inputs;
     sample = shown(stepper.now());
     truth = truth_of(stepper.now());
   }
@@ -203,8 +228,9 @@ struct Gyro::Parts {
 Gyro::Gyro(const Device& device, const GyroStart& start)
     : parts_(new Parts{device, start,
                        internal::GyroStepper(internal::stepper_model_of(device),
-                                             si_start(start))}) {
-  parts_->take();
+                                             si_start(start)),
+                       start.inputs}) {
+  parts_->take(start.inputs);
 }
 Gyro::Gyro(const Gyro& other) : parts_(new Parts(*other.parts_)) {}
 Gyro::Gyro(Gyro&& other) noexcept = default;
@@ -216,6 +242,7 @@ Gyro::~Gyro() = default;
 
 const GyroSample& Gyro::now() const { return parts_->sample; }
 const GyroTruth& Gyro::truth() const { return parts_->truth; }
+const GyroInputs& Gyro::inputs() const { return parts_->last; }
 const Device& Gyro::device() const { return parts_->device; }
 const GyroStart& Gyro::start() const { return parts_->start; }
 
@@ -226,7 +253,7 @@ const GyroSample& Gyro::step(double duration, const GyroInputs& held) {
 const GyroSample& Gyro::step(double duration, const GyroInputs& from,
                              const GyroInputs& to) {
   parts_->stepper.step(duration, si_inputs(from), si_inputs(to), to.powered);
-  parts_->take();
+  parts_->take(to);
   return parts_->sample;
 }
 
@@ -242,17 +269,13 @@ Recording Gyro::advance(double duration, std::span<const GyroInputs> inputs,
     recording.columns.back().values.reserve(inputs.size());
   }
   for (std::size_t k = 0; k < inputs.size(); ++k) {
-    try {
+    named_by("step", k, [&] {
       const internal::StepInputs to = si_inputs(inputs[k]);
       next.stepper.step(
           duration, steps == GyroSteps::kLinear ? next.stepper.inputs() : to,
           to, inputs[k].powered);
-      next.take();
-    } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument(fmt::format("step {}: {}", k, error.what()));
-    } catch (const std::runtime_error& error) {
-      throw std::runtime_error(fmt::format("step {}: {}", k, error.what()));
-    }
+    });
+    next.take(inputs[k]);
     recording.time.push_back(next.sample.time);
     recording.status.push_back(next.sample.status);
     for (std::size_t i = 0; i < kSampleSignals.size(); ++i) {
@@ -272,14 +295,56 @@ Recording Gyro::advance(double duration, std::span<const GyroInputs> inputs,
   recording.program_version = internal::kProgramVersion;
   recording.git_revision = internal::kGitRevision;
   recording.device_text = parts_->device.text();
-  recording.overrides_text =
-      fmt::format("{}", fmt::join(parts_->device.overrides(), "\n"));
+  for (const std::string& change : parts_->device.overrides())
+    recording.overrides_text += change + "\n";
   parts_ = std::make_unique<Parts>(std::move(next));
   return recording;
 }
 
+void step_all(std::span<Gyro* const> gyros, double duration,
+              std::span<const GyroInputs> from, std::span<const GyroInputs> to,
+              unsigned threads) {
+  if (from.size() != gyros.size() || to.size() != gyros.size())
+    throw std::invalid_argument(
+        fmt::format("{} and {} inputs of {} gyros; expected one of each",
+                    from.size(), to.size(), gyros.size()));
+  std::vector<const Gyro*> sorted(gyros.begin(), gyros.end());
+  std::ranges::sort(sorted);
+  if (!sorted.empty() && sorted.front() == nullptr)
+    throw std::invalid_argument("a gyro is null; expected one");
+  if (std::ranges::adjacent_find(sorted) != sorted.end())
+    throw std::invalid_argument(
+        "a gyro is there twice; expected different ones");
+  // Parts that are worth a thread.
+  constexpr std::size_t kPart = 64;
+  const std::size_t parts = (gyros.size() + kPart - 1) / kPart;
+  const auto each = [&](const auto& work) {
+    internal::for_each_task(parts, internal::thread_count(threads),
+                            [&](std::size_t part, std::size_t) {
+                              const std::size_t end =
+                                  std::min(gyros.size(), (part + 1) * kPart);
+                              for (std::size_t k = part * kPart; k < end; ++k)
+                                work(k);
+                            });
+  };
+  each([&](std::size_t k) {
+    named_by("gyro", k, [&] {
+      gyros[k]->parts_->stepper.prepare(duration, si_inputs(from[k]),
+                                        si_inputs(to[k]), to[k].powered);
+    });
+  });
+  each([&](std::size_t k) {
+    gyros[k]->parts_->stepper.commit();
+    gyros[k]->parts_->take(to[k]);
+  });
+}
+
 std::string Gyro::state() const {
-  return state_key(parts_->device, parts_->start) + parts_->stepper.state();
+  std::string bytes = state_key(parts_->device, parts_->start);
+  auto archive = internal::StateArchive::writer(bytes);
+  GyroInputs last = parts_->last;
+  take_inputs(archive, last);
+  return bytes + parts_->stepper.state();
 }
 
 void Gyro::restore(std::string_view state) {
@@ -288,8 +353,11 @@ void Gyro::restore(std::string_view state) {
     throw std::invalid_argument(
         "the bytes are no state of this device, start and program; expected "
         "those that state() has returned for them");
-  parts_->stepper.restore(state.substr(key.size()));
-  parts_->take();
+  auto archive = internal::StateArchive::reader(state.substr(key.size()));
+  GyroInputs last;
+  take_inputs(archive, last);
+  parts_->stepper.restore(archive.rest());
+  parts_->take(last);
 }
 
 }  // namespace beamgyro

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <cstddef>
 #include <iterator>
 #include <utility>
 #include <vector>
@@ -19,46 +18,6 @@ namespace beamgyro::internal {
 namespace {
 
 constexpr int kLookEvery = 1000;  // [ms], whether the process still works
-
-// As the summary names them, in the order of SampleFault.
-constexpr std::array<const char*, static_cast<std::size_t>(SampleFault::kCount)>
-    kFaultWords = {"with another number of cells than names",
-                   "with a cell that is no number of its column",
-                   "with a value that is not finite or out of range",
-                   "with a time that does not rise",
-                   "too long",
-                   "cut off"};
-
-// Counts the samples, and those that are answered nan because they are none.
-class SampleCount {
- public:
-  void add() { ++samples_; }
-
-  // Warns of the first one of each kind.
-  void add(const BadSample& bad) {
-    ++samples_;
-    ++refused_;
-    if (++counts_[static_cast<std::size_t>(bad.fault())] == 1)
-      print_warning(
-          fmt::format("{}; it is answered nan, and so are others of this kind",
-                      bad.what()));
-  }
-
-  void print_summary() const {
-    if (refused_ == 0) return;
-    std::string kinds;
-    for (std::size_t k = 0; k < counts_.size(); ++k)
-      if (counts_[k] > 0)
-        kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", counts_[k],
-                             kFaultWords[k]);
-    print_warning(fmt::format("{} of {} samples are answered nan: {}", refused_,
-                              samples_, kinds));
-  }
-
- private:
-  std::array<std::size_t, kFaultWords.size()> counts_{};
-  std::size_t samples_ = 0, refused_ = 0;
-};
 
 void print_answers(CompensatorStream& stream) {
   const std::vector<StreamAnswer> answers = stream.answers();
@@ -74,12 +33,12 @@ void print_answers(CompensatorStream& stream) {
   print_result(text);
 }
 
-void take_line(InputLine line, SampleLines& lines, SampleCount& count,
+void take_line(InputLine line, SampleLines& lines, RefusedLines& count,
                CompensatorStream& stream) {
   std::optional<Recording> sample;
   try {
     sample = lines.sample(std::move(line));
-  } catch (const BadSample& bad) {
+  } catch (const BadLine& bad) {
     count.add(bad);
     stream.skip();
   }
@@ -88,7 +47,7 @@ void take_line(InputLine line, SampleLines& lines, SampleCount& count,
   stream.take(*sample);
 }
 
-void take_lines(InputLines& input, SampleLines& lines, SampleCount& count,
+void take_lines(InputLines& input, SampleLines& lines, RefusedLines& count,
                 CompensatorStream& stream) {
   while (!stream.fault()) {
     std::optional<InputLine> line = input.next();
@@ -105,7 +64,7 @@ bool answer_stream(CompensatorStream& stream, const std::string& compensator) {
     print_result("compensated_rate,compensated_rate_sigma\n");
   InputLines input;
   SampleLines lines;
-  SampleCount count;
+  RefusedLines count;
   while (!input.ended() && !stream.fault()) {
     std::array<pollfd, 2> waits = {pollfd{STDIN_FILENO, POLLIN, 0},
                                    pollfd{stream.descriptor(), POLLIN, 0}};

@@ -15,6 +15,7 @@ void add_characterise(CommandLine& program);
 void add_device(CommandLine& program);
 void add_run(CommandLine& program);
 void add_generate(CommandLine& program);
+void add_live(CommandLine& program);
 void add_sensitivity(CommandLine& program);
 void add_import(CommandLine& program);
 void add_train(CommandLine& program);

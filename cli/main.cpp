@@ -120,6 +120,7 @@ int run_program(const std::vector<std::string>& words) {
   add_device(program);
   add_run(program);
   add_generate(program);
+  add_live(program);
   add_sensitivity(program);
   add_train(program);
   add_compensate(program);

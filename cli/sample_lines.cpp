@@ -37,10 +37,10 @@ std::optional<Recording> SampleLines::sample(InputLine line) {
   require_whole(line);
   Recording read = parsed(header_ + line.text + (has_status_ ? "\n" : ",0\n"));
   if (!(read.time[0] > time_))
-    throw BadSample(SampleFault::kTime,
-                    fmt::format("{}: time {} does not follow {}; expected "
-                                "times that rise",
-                                place(), read.time[0], time_));
+    throw BadLine(LineFault::kTime,
+                  fmt::format("{}: time {} does not follow {}; expected "
+                              "times that rise",
+                              place(), read.time[0], time_));
   time_ = read.time[0];
   return read;
 }
@@ -88,18 +88,18 @@ void SampleLines::require_names() const {
 
 void SampleLines::require_whole(const InputLine& line) const {
   if (line.end == LineEnd::kTooLong)
-    throw BadSample(SampleFault::kTooLong,
-                    fmt::format("{}: {}", place(), too_long_words()));
+    throw BadLine(LineFault::kTooLong,
+                  fmt::format("{}: {}", place(), too_long_words()));
   if (line.end == LineEnd::kCutOff)
-    throw BadSample(SampleFault::kCutOff,
-                    fmt::format("{}: the last line has no end and may be cut "
-                                "off; expected a newline",
-                                place()));
+    throw BadLine(LineFault::kCutOff,
+                  fmt::format("{}: the last line has no end and may be cut "
+                              "off; expected a newline",
+                              place()));
   // The reader would count the status that is added, too.
   if (const auto commas = std::ranges::count(line.text, ','); commas != commas_)
-    throw BadSample(SampleFault::kCells,
-                    fmt::format("{}: {}; expected {} as in the line of names",
-                                place(), cells_words(commas + 1), commas_ + 1));
+    throw BadLine(LineFault::kCells,
+                  fmt::format("{}: {}; expected {} as in the line of names",
+                              place(), cells_words(commas + 1), commas_ + 1));
 }
 
 // Messages of the reader speak of the second line, those of the recording of
@@ -111,17 +111,17 @@ Recording SampleLines::parsed(const std::string& text) const {
     const std::string message = error.what();
     const std::string second = fmt::format("{}:2", kInput);
     if (message.starts_with(second))
-      throw BadSample(SampleFault::kNumber,
-                      place() + message.substr(second.size()));
+      throw BadLine(LineFault::kNumber,
+                    place() + message.substr(second.size()));
     const std::string file = fmt::format("{}: ", kInput);
     const std::string sample = ": sample 0 is ";
     const std::size_t at = message.find(sample);
     if (!message.starts_with(file) || at == message.npos)
-      throw BadSample(SampleFault::kValue, message);
-    throw BadSample(SampleFault::kValue,
-                    fmt::format("{}: {} is {}", place(),
-                                message.substr(file.size(), at - file.size()),
-                                message.substr(at + sample.size())));
+      throw BadLine(LineFault::kValue, message);
+    throw BadLine(LineFault::kValue,
+                  fmt::format("{}: {} is {}", place(),
+                              message.substr(file.size(), at - file.size()),
+                              message.substr(at + sample.size())));
   }
 }
 

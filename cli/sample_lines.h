@@ -4,42 +4,20 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
-#include <stdexcept>
 #include <string>
 
 #include "cli/input_lines.h"
+#include "cli/refused_lines.h"
 #include "dataset/log/recording_csv.h"
 
 namespace beamgyro::internal {
-
-/// What can be wrong with the line of a sample.
-enum class SampleFault {
-  kCells,   // more or fewer than names
-  kNumber,  // a cell that is none, or none of its column
-  kValue,   // nan while powered, or out of range
-  kTime,    // does not rise
-  kTooLong,
-  kCutOff,
-  kCount  // no fault: how many there are
-};
-
-/// A line that is no sample.
-class BadSample : public std::invalid_argument {
- public:
-  BadSample(SampleFault fault, const std::string& words)
-      : std::invalid_argument(words), fault_(fault) {}
-  SampleFault fault() const { return fault_; }
-
- private:
-  SampleFault fault_;
-};
 
 /// Samples from lines of CSV on standard input, a line of names first.
 class SampleLines {
  public:
   /// Returns the sample of a line, or nothing for an empty one and the line of
   /// names. Throws std::invalid_argument "standard input:line: ..." for names
-  /// that cannot be those of samples, and BadSample.
+  /// that cannot be those of samples, and BadLine.
   std::optional<Recording> sample(InputLine line);
 
  private:

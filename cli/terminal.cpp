@@ -92,9 +92,12 @@ void print_line(std::string_view label, const char* colour,
 void set_quiet(bool quiet) { prints_errors_only = quiet; }
 
 void print_result(std::string_view text) {
-  const std::string safe = harmless(text, "\n\t");
+  print_bytes(harmless(text, "\n\t"));
+}
+
+void print_bytes(std::string_view bytes) {
   errno = 0;
-  if (std::fwrite(safe.data(), 1, safe.size(), stdout) == safe.size() &&
+  if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size() &&
       std::fflush(stdout) == 0)
     return;
   // Who reads may have enough, as head has; the command goes on to its status.

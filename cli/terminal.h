@@ -16,6 +16,9 @@ void set_quiet(bool quiet);
 /// be written (a full disk, a closed pipe).
 void print_result(std::string_view text);
 
+/// The same with bytes as they are.
+void print_bytes(std::string_view bytes);
+
 /// Prints one line on standard error.
 void print_note(std::string_view text);
 void print_warning(std::string_view text);

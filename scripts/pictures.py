@@ -14,6 +14,7 @@ import argparse
 import ast
 import hashlib
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -45,6 +46,12 @@ MAKERS = {
                 "scenarios/models/recommended.toml",
                 "scenarios/devices/nominal.toml",
                 "scenarios/qualification.toml", "specs/uav.toml"]),
+    "closed_loop": ("examples/python/stabilised_platform.py",
+                    ["closed_loop.png"],
+                    ["examples/python/stabilised_platform.py",
+                     "scenarios/devices/nominal.toml",
+                     "scenarios/soak_sweep_train.toml",
+                     "scenarios/models/cubic.toml"]),
     "demo": ("scripts/demo.py", ["drift.png", "spurious_modes.png"],
              ["scripts/figures.py", "scripts/demo.py", "scripts/demo_modes.py",
               "scripts/demo_runs.py", "python/beamgyro/plots/style.py",
@@ -98,9 +105,15 @@ def make(maker, program):
     command = [PYTHON, ROOT / MAKERS[maker][0]]
     if maker == "diagrams":
         command.append(PICTURES)
+    elif maker == "closed_loop":
+        command += ["scenarios/devices/nominal.toml",
+                    "scenarios/soak_sweep_train.toml",
+                    "scenarios/models/cubic.toml",
+                    PICTURES / "closed_loop.png"]
     else:
         command += ["--program", program]
-    subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL,
+                   env={**os.environ, "PYTHONPATH": str(program.parent / "python")})
     if maker == "demo":
         for name, drawn in OF_THE_DEMO.items():
             shutil.copy(ROOT / "out/demo" / drawn, PICTURES / name)

@@ -34,7 +34,7 @@ struct GyroInputs {
 
 /// How a gyro begins.
 struct GyroStart {
-  std::string fidelity = "quasistatic";  ///< the only one so far
+  std::string fidelity = "quasistatic";  ///< or "envelope"
   std::uint64_t seed = 0;                ///< of its noise
   bool noise = true;
   /// The noise changes at this rate [Hz] and holds in between, so steps may be
@@ -80,10 +80,12 @@ struct GyroTruth {
 enum class GyroSteps { kHeld, kLinear };
 
 /// One gyro that goes on step by step without knowing what comes later: the
-/// quasi-static model of simulate(). Replayed on the samples of a scenario made
-/// of straight lines it shows what the run shows (docs/guide/in_the_loop.md). A
-/// copy is a snapshot. Different objects may be used in different threads, one
-/// object in one thread at a time.
+/// quasi-static or the envelope model of simulate(). The envelope has no units
+/// that remember; it starts at rest, and locks within a second of power.
+/// Replayed on the samples of a scenario made of straight lines it shows what
+/// the run shows (docs/guide/in_the_loop.md). A copy is a snapshot. Different
+/// objects may be used in different threads, one object in one thread at a
+/// time.
 ///
 /// Whatever a call throws, the gyro is as it was before.
 class Gyro {
@@ -127,12 +129,26 @@ class Gyro {
   /// none of this program, device and start.
   void restore(std::string_view state);
 
+  /// The inputs at the end of the last step, or of the start.
+  const GyroInputs& inputs() const;
+
   const Device& device() const;
   const GyroStart& start() const;
 
  private:
+  friend void step_all(std::span<Gyro* const> gyros, double duration,
+                       std::span<const GyroInputs> from,
+                       std::span<const GyroInputs> to, unsigned threads);
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
+
+/// Makes one step of several gyros, each with inputs of its own, as
+/// Gyro::step() does: all of them, or none if one throws, whose number is in
+/// the message. `threads` 0: one per core. Throws std::invalid_argument also
+/// for spans of another length, a null pointer and a gyro that is there twice.
+void step_all(std::span<Gyro* const> gyros, double duration,
+              std::span<const GyroInputs> from, std::span<const GyroInputs> to,
+              unsigned threads = 1);
 
 }  // namespace beamgyro

@@ -29,6 +29,7 @@ from beamgyro._dataset import open_recording, save_recording
 from beamgyro._device import Device
 from beamgyro._estimator import Estimator, LegSplit, RunSplit
 from beamgyro._export import export
+from beamgyro._gyro import Gyro, Sample, Truth, step_all
 from beamgyro._import import import_log
 from beamgyro._many import run_many
 from beamgyro._results import (AllanResult, CurveFiguresResult, PlanResult,
@@ -43,13 +44,13 @@ from beamgyro._windows import Windows
 
 __all__ = [
     "AllanResult", "BeamgyroWarning", "Campaign", "Compensator",
-    "CurveFiguresResult", "Device", "Estimator", "HalfSplit", "LegSplit",
-    "PlanResult", "RunSplit", "Scenario", "SensitivityResult", "Set",
-    "ValidationResult", "Windows", "__version__", "allan", "area_metric",
+    "CurveFiguresResult", "Device", "Estimator", "Gyro", "HalfSplit",
+    "LegSplit", "PlanResult", "RunSplit", "Sample", "Scenario",
+    "SensitivityResult", "Set", "Truth", "ValidationResult", "Windows", "__version__", "allan", "area_metric",
     "characterise", "compensate", "curve_figures", "export", "features",
     "generate", "half_split", "import_log", "open_recording", "open_set",
     "plan", "run", "run_many", "run_to_file", "save_recording", "sensitivity",
-    "train", "training_rows", "validate",
+    "step_all", "train", "training_rows", "validate",
 ]
 
 

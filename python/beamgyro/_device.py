@@ -4,11 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 from beamgyro import _checks, _core, _toml
 from beamgyro._checks import Path as Path
 from beamgyro._native import Native, Wrapper
+
+if TYPE_CHECKING:
+    from beamgyro._gyro import Gyro
 
 Keys = Mapping[str, Any]
 DeviceLike = Union["Device", Path, Keys]
@@ -63,6 +66,39 @@ class Device(Wrapper):
         """
         return Device._of(
             self._native.with_(_toml.overrides(_toml.merged(keys, more))))
+
+    def start(self, *, seed: int = 0,
+              temperature_degC: Optional[float] = None, noise: bool = True,
+              noise_rate_Hz: float = 0.0, fidelity: str = "quasistatic",
+              **others: Any) -> Gyro:
+        """Start the gyro, to be stepped inside another simulation.
+
+        >>> gyro = device.start(seed=1)
+        >>> gyro.step(rate=10.0, ambient=25.0, dt=0.01).rate
+
+        Args:
+            seed: the seed of everything random.
+            temperature_degC: of every part of the gyro at the start [degC];
+                without, that of the ambient.
+            noise: whether there is noise.
+            noise_rate_Hz: the noise changes at this rate [Hz] and holds in
+                between, so steps may be cut anywhere; at the output rate of a
+                scenario it is that of its run. 0: one over the first ``dt``.
+            fidelity: "quasistatic", the only one so far.
+            **others: ``stirred``, whether a fan moves the air; ``age_hours``
+                since the factory trim; ``history`` of a gyro that remembers,
+                pairs of time [s], up to 0, and temperature [degC]; and what
+                acts at the start, and has for long, under the names of
+                `Gyro.step`.
+
+        Raises:
+            ValueError: a value is out of range.
+            RuntimeError: the drive loop of this gyro cannot lock.
+        """
+        from beamgyro._gyro import start_gyro
+        return start_gyro(self, seed=seed, temperature_degC=temperature_degC,
+                          noise=noise, noise_rate_Hz=noise_rate_Hz,
+                          fidelity=fidelity, **others)
 
     text = Native(str, "The text of the device file.")
     name = Native(str, "The name of the file, as messages give it.")

@@ -21,6 +21,7 @@ void bind_recording(py::module_& core);
 void bind_simulation(py::module_& core);
 void bind_compensation(py::module_& core);
 void bind_analysis(py::module_& core);
+void bind_gyro(py::module_& core);
 
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 

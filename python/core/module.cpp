@@ -70,6 +70,7 @@ PYBIND11_MODULE(_core, core) {
   python::bind_simulation(core);
   python::bind_compensation(core);
   python::bind_analysis(core);
+  python::bind_gyro(core);
   python::refuse_new_objects(core);
   core.def("end_running_work", &python::end_running_work);
   pybind11::module_::import("atexit").attr("register")(

@@ -223,4 +223,18 @@ void EnvelopeOde::rate(const EnvelopeInputs& inputs, const State& y,
   put_loop_rates(m.drive, U_F, r, m.z, y, dydt);
 }
 
+Eigen::VectorXd envelope_error_weights(const TrimmedGyro& gyro,
+                                       const EnvelopeOde& ode) {
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(ode.size());
+  weights.segment<2>(kAmplitude).setConstant(0.3);
+  weights.segment<2>(kAmplitude + 2).setConstant(2e-3);
+  weights.segment<4>(kFeedback1).setConstant(0.3);
+  weights(kPllIntegral) = 100;
+  weights(kAgcIntegral) = 0.3;
+  weights.tail(ode.size() - kEnvelopeNodes).setConstant(50);
+  const Eigen::VectorXd spurious = spurious_error_weights(gyro);
+  weights.tail(spurious.size()) = spurious;
+  return weights;
+}
+
 }  // namespace beamgyro::internal

@@ -215,4 +215,10 @@ class EnvelopeOde : public LoopedBeam {
   ThermalOde thermal_;
 };
 
+/// Returns the local error of each state that matters as much as one of 1 rad/s
+/// in the output: 1e-6 of the drive amplitude moves the output of a unit with a
+/// quadrature of some 100 deg/s by 2e-6 rad/s, and so on.
+Eigen::VectorXd envelope_error_weights(const TrimmedGyro& gyro,
+                                       const EnvelopeOde& ode);
+
 }  // namespace beamgyro::internal

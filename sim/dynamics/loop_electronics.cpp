@@ -80,4 +80,10 @@ DriveSignals drive_signals(const LoopElectronics& loops, double i2, double q2,
   return s;
 }
 
+bool is_locked(const DriveSignals& drive) {
+  return !drive.limited &&
+         std::abs(drive.amplitude_error()) < kAmplitudeErrorLocked &&
+         std::abs(drive.phase) < kPhaseErrorLocked;
+}
+
 }  // namespace beamgyro::internal

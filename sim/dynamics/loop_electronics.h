@@ -84,4 +84,11 @@ struct DriveSignals {
 DriveSignals drive_signals(const LoopElectronics& loops, double i2, double q2,
                            double xi, double eta);
 
+inline constexpr double kAmplitudeErrorLocked = 0.01;  // of the set value
+inline constexpr double kPhaseErrorLocked = 0.02;      // [rad]
+
+/// Returns whether the loops hold amplitude and phase with the voltage below
+/// its limit.
+bool is_locked(const DriveSignals& drive);
+
 }  // namespace beamgyro::internal

@@ -338,4 +338,21 @@ void ExplicitRk::restart(double t, const Eigen::VectorXd& y) {
   m.check(ARKStepReset(m.memory.get(), t, m.nv_y.get()), "ARKStepReset");
 }
 
+void ExplicitRk::restart(double t, const Eigen::VectorXd& y, double step) {
+  Memory& m = memory();
+  m.time = t;
+  m.y = y;
+  void* mem = m.memory.get();
+  m.check(ARKStepReInit(mem, &Problem::call_rhs, nullptr, t, m.nv_y.get()),
+          "ARKStepReInit");
+  m.check(ARKStepSetInitStep(mem, step), "ARKStepSetInitStep");
+}
+
+double ExplicitRk::next_step() {
+  double step = 0;
+  memory().check(ARKStepGetCurrentStep(memory().memory.get(), &step),
+                 "ARKStepGetCurrentStep");
+  return step;
+}
+
 }  // namespace beamgyro::internal

@@ -154,6 +154,12 @@ class ExplicitRk : public OdeIntegrator {
   /// Keeps the step size.
   void restart(double t, const Eigen::VectorXd& y) override;
 
+  /// Forgets everything before, and tries `step` [s] first; 0: what it finds.
+  /// What follows depends on t, y and step alone.
+  void restart(double t, const Eigen::VectorXd& y, double step);
+  /// Returns the step that would be tried next [s].
+  double next_step();
+
  private:
   struct Memory;
   Memory& memory();

@@ -4,17 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "sim/numerics/simulation_failure.h"
 
 namespace beamgyro::internal {
-
-bool is_locked(const DriveSignals& drive) {
-  return !drive.limited &&
-         std::abs(drive.amplitude_error()) < kAmplitudeErrorLocked &&
-         std::abs(drive.phase) < kPhaseErrorLocked;
-}
 
 bool lock_is_due(const ScenarioPlan& scenario, double t) {
   const auto after =

@@ -7,13 +7,7 @@
 
 namespace beamgyro::internal {
 
-inline constexpr double kLockTime = 1.0;               // [s] after power-on
-inline constexpr double kAmplitudeErrorLocked = 0.01;  // of the set value
-inline constexpr double kPhaseErrorLocked = 0.02;      // [rad]
-
-/// Returns whether the loops hold amplitude and phase with the voltage below
-/// its limit.
-bool is_locked(const DriveSignals& drive);
+inline constexpr double kLockTime = 1.0;  // [s] after power-on
 
 /// Returns whether the loops of a sound device are locked at `t` [s]: the power
 /// has been on for kLockTime.

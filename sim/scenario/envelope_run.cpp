@@ -14,22 +14,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// Local error of each state that matters as much as one of 1 rad/s in the
-// output: 1e-6 of the drive amplitude moves the output of a unit with a
-// quadrature of some 100 deg/s by 2e-6 rad/s, and so on.
-VectorXd error_weights(const TrimmedGyro& gyro, const EnvelopeOde& ode) {
-  VectorXd weights = VectorXd::Ones(ode.size());
-  weights.segment<2>(kAmplitude).setConstant(0.3);
-  weights.segment<2>(kAmplitude + 2).setConstant(2e-3);
-  weights.segment<4>(kFeedback1).setConstant(0.3);
-  weights(kPllIntegral) = 100;
-  weights(kAgcIntegral) = 0.3;
-  weights.tail(ode.size() - kEnvelopeNodes).setConstant(50);
-  const VectorXd spurious = spurious_error_weights(gyro);
-  weights.tail(spurious.size()) = spurious;
-  return weights;
-}
-
 // States that a sample needs.
 const std::vector<Index> kStoredStates = {
     kFeedback2,         kFeedback2 + 1,     kPllIntegral,
@@ -103,7 +87,7 @@ EnvelopeTrajectory::EnvelopeTrajectory(const ScenarioPlan& scenario,
     ode_.rate(inputs(t), y, dydt);
   };
   const VectorXd start = ode_.at_rest(scenario.ambient.value(0));
-  const VectorXd absolute = tolerance * error_weights(gyro, ode_);
+  const VectorXd absolute = tolerance * envelope_error_weights(gyro, ode_);
   if (needs_explicit_method(scenario, motion)) {
     ExplicitRkOptions options;
     options.table = RkTable::kDormandPrince;

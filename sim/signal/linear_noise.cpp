@@ -233,9 +233,14 @@ void LinearNoise::advance() {
     stream_.fill_normal(values_of(normals_));
     next_ = 0;
   }
-  driven_.head(n) = state_;
+  driven_.head(n) = before_ = state_;
   driven_.tail(n) = normals_.col(next_++);
   state_.noalias() = step_ * driven_;
+}
+
+void LinearNoise::undo() {
+  state_ = before_;
+  --next_;
 }
 
 void LinearNoise::refresh(const NoiseSystem& system) {
@@ -245,6 +250,17 @@ void LinearNoise::refresh(const NoiseSystem& system) {
         fmt::format("refreshed noise system has {} states, must have {}",
                     sampled.root.rows(), state_.size()));
   step_ << sampled.transition, sampled.root;
+}
+
+void LinearNoise::archive(StateArchive& archive) {
+  before_.resize(state_.size());
+  for (double& z : state_) archive(z);
+  for (double& z : before_) archive(z);
+  archive(stream_, next_);
+  if (!archive.is_reading() || next_ == kDrawnAhead) return;
+  const std::uint64_t drawn = stream_.position();
+  stream_.seek(drawn - static_cast<std::uint64_t>(normals_.size()));
+  stream_.fill_normal(values_of(normals_));
 }
 
 }  // namespace beamgyro::internal

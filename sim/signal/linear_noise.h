@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include "random/random_stream.h"
+#include "sim/numerics/state_archive.h"
 
 namespace beamgyro::internal {
 
@@ -59,18 +60,24 @@ class LinearNoise {
   /// Advances to the next sample.
   void advance();
 
+  /// Takes the last advance() back; call once after it.
+  void undo();
+
   /// Replaces the coefficients from here on, for the same states. z stays.
   /// Throws as sampled_noise(), or for another number of states.
   void refresh(const NoiseSystem& system);
 
+  /// Takes the state, not the coefficients.
+  void archive(StateArchive& archive);
+
  private:
   double interval_;  // [s]
   RandomStream stream_;
-  Eigen::VectorXd state_;
-  Eigen::MatrixXd step_;     // [Phi L]
-  Eigen::VectorXd driven_;   // z and the normal numbers of one step
-  Eigen::MatrixXd normals_;  // one column a sample, drawn ahead
-  Eigen::Index next_;        // its first unused column
+  Eigen::VectorXd state_, before_;  // before_: the sample before
+  Eigen::MatrixXd step_;            // [Phi L]
+  Eigen::VectorXd driven_;          // z and the normal numbers of one step
+  Eigen::MatrixXd normals_;         // one column a sample, drawn ahead
+  Eigen::Index next_;               // its first unused column
 };
 
 }  // namespace beamgyro::internal

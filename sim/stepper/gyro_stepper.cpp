@@ -3,23 +3,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "config/units.h"
-#include "sim/dynamics/mechanical_noise.h"
-#include "sim/memory/bond_relaxation.h"
-#include "sim/signal/loop_channels.h"
 #include "sim/signal/readout.h"
-#include "sim/signal/temperature_sensor.h"
 #include "sim/thermal/material_check.h"
 
 namespace beamgyro::internal {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 NodeVector temperatures_of(const ThermalStepper::State& nodes) {
   return nodes.head<kThermalNodeCount>();
@@ -46,11 +41,14 @@ void check_inputs(const StepInputs& inputs) {
           inputs.ambient - kZeroCelsius, "-100 to 150 degC");
 }
 
+void check_noise_rate(double rate) {
+  require(rate >= 0 && rate <= 1e6, "the rate of the noise [Hz]", rate,
+          "at most 1e6 Hz, or 0: one over the duration of the first step");
+}
+
 void check_start(const StepperStart& start) {
   check_inputs(start.inputs);
-  require(start.noise_rate >= 0 && start.noise_rate <= 1e6,
-          "the rate of the noise [Hz]", start.noise_rate,
-          "0 (that of the first step) to 1e6 Hz");
+  check_noise_rate(start.noise_rate);
   if (start.temperatures)
     for (const double T : *start.temperatures)
       require(materials_stand(T), "the temperature of a node [degC]",
@@ -58,6 +56,18 @@ void check_start(const StepperStart& start) {
   if (start.age)
     require(*start.age >= 0 && *start.age <= 1e9, "the age [s]", *start.age,
             "0 to 1e9 s");
+}
+
+std::optional<LoopResponse> loops_of(
+    const std::shared_ptr<const StepperModel>& model,
+    const StepperStart& start) {
+  if (start.fidelity != StepFidelity::kEnvelope) return std::nullopt;
+  if (model->gyro.device.memory.any())
+    throw std::invalid_argument(
+        "the fidelity is that of the envelope, for a gyro that remembers; "
+        "expected the quasi-static fidelity, the one in which such a gyro can "
+        "be stepped");
+  return std::optional<LoopResponse>(std::in_place, model);
 }
 
 StepperStart checked(const StepperStart& start) {
@@ -85,19 +95,19 @@ GyroStepper::GyroStepper(std::shared_ptr<const StepperModel> model,
       start_(checked(start)),
       thermal_(model_->gyro, start.stirred),
       response_(model_),
+      loops_(loops_of(model_, start)),
       readout_(readout_of(model_->gyro.device.readout)),
-      white_noise_(output_noise(model_->gyro).angle_random_walk),
-      state_(first_state(model_->gyro, start)),
+      state_(first_state()),
       next_(state_) {
   switch_power(state_, start.powered);
   if (start_.noise && start_.noise_rate > 0)
-    noise_.emplace(model_->gyro, start_, start_.noise_rate);
+    noise_.emplace(model_, start_, start_.noise_rate, conditions_of(state_));
   sample_ = sample_of(state_, signals_of(state_));
 }
 
-GyroStepper::State GyroStepper::first_state(const TrimmedGyro& gyro,
-                                            const StepperStart& start) {
-  const DeviceParameters& device = gyro.device;
+GyroStepper::State GyroStepper::first_state() const {
+  const DeviceParameters& device = model_->gyro.device;
+  const StepperStart& start = start_;
   State state{.nodes = ThermalStepper::State::Zero(),
               .inputs = start.inputs,
               .powered = false,
@@ -111,12 +121,14 @@ GyroStepper::State GyroStepper::first_state(const TrimmedGyro& gyro,
                          state.nodes(kPzt));
     state.memory->push_beam(state.nodes(kBeam));
   }
+  if (loops_) state.loops = loops_->at_rest(temperatures_of(state.nodes));
   return state;
 }
 
 void GyroStepper::switch_power(State& state, bool powered) const {
   if (powered == state.powered) return;
   state.powered = powered;
+  if (loops_) loops_->stop(*state.loops);
   PowerCycle& cycle = state.cycle;
   const double now = state.time();
   if (!powered) {
@@ -158,8 +170,41 @@ void GyroStepper::heat(State& state, double duration, const StepInputs& from,
   }
 }
 
+void GyroStepper::advance_loops(State& state, double duration,
+                                const StepInputs& from, const StepInputs& to) {
+  constexpr double kLongest = 1.0;  // [s], between two looks at the materials
+  const double electronics = model_->gyro.device.thermal.electronics_power;
+  const auto parts =
+      static_cast<std::int64_t>(std::max(1.0, std::ceil(duration / kLongest)));
+  const double start = state.time();
+  const auto at = [&](std::int64_t i) {
+    const double share = static_cast<double>(i) / static_cast<double>(parts);
+    StepInputs inputs;
+    for (std::size_t k = 0; k < kCaseAxisCount; ++k)
+      inputs.motion[k] = std::lerp(from.motion[k], to.motion[k], share);
+    inputs.ambient = std::lerp(from.ambient, to.ambient, share);
+    return inputs;
+  };
+  const double part = duration / static_cast<double>(parts);
+  for (std::int64_t i = 0; i < parts; ++i) {
+    const double begin = start + static_cast<double>(i) * part;
+    const StepInputs after = at(i + 1);
+    loops_->advance(*state.loops,
+                    {begin, part, at(i), after, state.powered, start_.stirred});
+    check_materials(begin + part, LoopResponse::nodes(*state.loops),
+                    after.ambient, electronics);
+  }
+  state.nodes.head<kThermalNodeCount>() = LoopResponse::nodes(*state.loops);
+}
+
 const StepSample& GyroStepper::step(double duration, const StepInputs& from,
                                     const StepInputs& to, bool powered) {
+  prepare(duration, from, to, powered);
+  return commit();
+}
+
+void GyroStepper::prepare(double duration, const StepInputs& from,
+                          const StepInputs& to, bool powered) {
   if (!(duration > 0 && duration <= kLongestStep))
     throw std::invalid_argument(
         fmt::format("the duration of a step is {:g} s; expected above 0, at "
@@ -169,16 +214,30 @@ const StepSample& GyroStepper::step(double duration, const StepInputs& from,
   check_inputs(to);
   next_ = state_;
   switch_power(next_, powered);
-  heat(next_, duration, from, to);
+  if (loops_)
+    advance_loops(next_, duration, from, to);
+  else
+    heat(next_, duration, from, to);
   next_.motion.advance(from.motion, to.motion, duration);
   next_.inputs = to;
   next_.pass(duration);
-  const StepSignals signals = signals_of(next_);
+  next_signals_ = signals_of(next_);
+  if (!start_.noise) return;
+  if (!noise_) check_noise_rate(1 / duration);
+  TickNoise::last_tick(noise_ ? noise_->rate() : 1 / duration, next_.time());
+}
+
+const StepSample& GyroStepper::commit() {
   if (start_.noise) {
-    if (!noise_) noise_.emplace(model_->gyro, start_, 1 / duration);
-    noise_->advance_to(next_.time());
+    NoiseConditions before = conditions_of(state_);
+    if (!noise_) noise_.emplace(model_, start_, 1 / next_.duration, before);
+    if (next_.powered != state_.powered) {
+      before.powered = next_.powered;
+      noise_->switch_power(state_.time(), before);
+    }
+    noise_->advance_to(next_.time(), conditions_of(next_));
   }
-  sample_ = sample_of(next_, signals);
+  sample_ = sample_of(next_, next_signals_);
   state_ = next_;
   return sample_;
 }
@@ -192,7 +251,28 @@ void GyroStepper::State::pass(double step) {
   ++steps;
 }
 
+NoiseConditions GyroStepper::conditions_of(const State& state) {
+  return {state.nodes(kBeam), state.nodes(kBoard), state.powered};
+}
+
+// Without power a gyro has no output; its bias is the one that it would settle
+// to.
+StepSignals GyroStepper::loop_signals_of(const State& state) {
+  const NodeVector nodes = temperatures_of(state.nodes);
+  StepSignals signals = loops_->at(state.time(), *state.loops, state.powered);
+  if (!state.powered)
+    signals.bias =
+        response_.at(state.time(), nodes, {}, state.motion, false).bias;
+  if (!model_->gyro.device.spurious_modes.empty()) {
+    const CaseFilter still(model_->gyro.device.readout.corner_frequency, {});
+    signals.spurious_bias =
+        response_.at(state.time(), nodes, {}, still, false).spurious_bias;
+  }
+  return signals;
+}
+
 StepSignals GyroStepper::signals_of(const State& state) {
+  if (loops_) return loop_signals_of(state);
   return response_.at(state.time(), temperatures_of(state.nodes),
                       memory_of(state), state.motion, state.powered);
 }
@@ -201,115 +281,13 @@ MemoryState GyroStepper::memory_of(const State& state) {
   return state.memory ? state.memory->state(state.nodes(kPzt)) : MemoryState{};
 }
 
-double GyroStepper::noise_of(const State& state) const {
-  if (!noise_) return 0;
-  double noise = noise_->output();
-  if (!state.powered) return noise;
-  const PowerCycle& cycle = state.cycle;
-  noise += cycle.offset;
-  if (cycle.transient != 0)
-    noise +=
-        cycle.transient * std::exp((cycle.on - state.time()) /
-                                   model_->gyro.device.noise.turn_on_settling);
-  return noise;
-}
-
-GyroStepper::Channels GyroStepper::channels_of(
-    const State& state, const StepSignals& signals) const {
-  const DeviceParameters& device = model_->gyro.device;
-  if (!device.loop_channels)
-    return {signals.drive_frequency, signals.drive_voltage, signals.quadrature};
-  const LoopChannelParameters& errors = *device.loop_channels;
-  const double dT = state.nodes(kBoard) - kCalibrationTemperature;
-  const double age = start_.age.value_or(0) + state.time();
-  Eigen::Vector2d drive = Eigen::Vector2d::Zero();
-  double quadrature = 0;
-  if (noise_ && errors.noise) {
-    const double root = std::sqrt(noise_->rate());
-    drive = root * model_->drive_noise->at(state.nodes(kBeam));
-    drive(0) *= noise_->drive_frequency();
-    drive(1) *= signals.locked ? noise_->drive_voltage() : 0;
-    quadrature = root * white_noise_ * noise_->quadrature();
-  }
-  return {
-      measured_frequency(errors, signals.drive_frequency, drive(0), dT, age),
-      measured_voltage(errors, signals.drive_voltage, drive(1), dT),
-      measured_quadrature(errors, signals.quadrature, quadrature, dT)};
-}
-
-void GyroStepper::put_measured(const State& state, const StepSignals& signals,
-                               StepSample& sample) const {
-  const DeviceParameters& device = model_->gyro.device;
-  const ReadoutParameters& readout = device.readout;
-  const ReadoutSample shown = readout_.sample(signals.output + noise_of(state));
-  sample.output = shown.voltage;
-  sample.rate =
-      (shown.voltage - readout.offset) / (readout.scale_factor * kDegree);
-  sample.saturated = shown.saturated;
-  sample.temperature = quantise(
-      sensed_temperature(device.temperature_sensor, state.nodes(kSensor),
-                         noise_ ? noise_->sensor() : 0),
-      device.temperature_sensor.resolution);
-  const Channels channels = channels_of(state, signals);
-  sample.drive_frequency =
-      quantise(channels.drive_frequency, readout.drive_frequency_resolution);
-  sample.drive_voltage =
-      quantise(channels.drive_voltage, readout.drive_voltage_resolution);
-  sample.quadrature = quantise(channels.quadrature * (1 / kDegree),
-                               readout.quadrature_resolution / kDegree);
-}
-
-void GyroStepper::put_truth(const State& state, const StepSignals& signals,
-                            StepSample& sample) const {
-  const PerAxis<double>& motion = state.inputs.motion;
-  sample.true_rate = motion[kRateZ] / kDegree;
-  sample.true_cross_rate_x = motion[kRateX] / kDegree;
-  sample.true_cross_rate_y = motion[kRateY] / kDegree;
-  sample.true_acceleration_x = motion[kAccelerationX];
-  sample.true_acceleration_y = motion[kAccelerationY];
-  sample.true_acceleration_z = motion[kAccelerationZ];
-  sample.true_bias = signals.bias / kDegree;
-  const DeviceParameters& device = model_->gyro.device;
-  sample.true_spurious_bias =
-      device.spurious_modes.empty() ? kNaN : signals.spurious_bias / kDegree;
-  sample.true_drive_frequency = signals.drive_frequency;
-  sample.true_fictive_temperature = sample.true_hysteresis = kNaN;
-  const MemoryState memory = memory_of(state);
-  if (device.memory.relaxation)
-    sample.true_fictive_temperature =
-        reference_fictive_temperature(state.nodes(kPzt),
-                                      device.bond.glass_transition) +
-        memory.glass_offset - kZeroCelsius;
-  if (device.memory.hysteresis) sample.true_hysteresis = memory.hysteresis;
-  for (std::size_t i = 0; i < kThermalNodeCount; ++i)
-    sample.true_node_temperature[i] =
-        state.nodes(static_cast<Eigen::Index>(i)) - kZeroCelsius;
-  sample.true_ambient_temperature = state.inputs.ambient - kZeroCelsius;
-}
-
-StepSample GyroStepper::sample_of(const State& state,
-                                  const StepSignals& signals) const {
-  StepSample sample;
-  sample.time = state.time();
-  sample.powered = state.powered;
-  put_truth(state, signals, sample);
-  if (state.powered) {
-    sample.locked = signals.locked;
-    put_measured(state, signals, sample);
-    return sample;
-  }
-  sample.locked = sample.saturated = false;
-  sample.output = sample.rate = sample.temperature = sample.drive_frequency =
-      sample.drive_voltage = sample.quadrature = kNaN;
-  return sample;
-}
-
 void GyroStepper::State::archive(StateArchive& archive) {
   archive(start, duration, steps);
   for (double& y : nodes) archive(y);
   archive(inputs.motion, inputs.ambient, powered, motion, cycle.number,
           cycle.on, cycle.off, cycle.offset, cycle.transient);
   if (memory) archive(*memory);
+  if (loops) archive(*loops);
 }
 
 std::string GyroStepper::state() const {
@@ -330,10 +308,10 @@ void GyroStepper::restore(std::string_view bytes) {
   archive(state, noise_rate);
   std::optional<TickNoise> noise;
   if (start_.noise && noise_rate > 0) {
-    noise.emplace(model_->gyro, start_, noise_rate);
+    noise.emplace(model_, start_, noise_rate, conditions_of(state));
     archive(*noise);
   }
-  if (!archive.at_end())
+  if (!archive.rest().empty())
     throw std::invalid_argument("the bytes of the state do not end with it");
   const StepSignals signals = signals_of(state);
   std::swap(noise_, noise);

@@ -8,6 +8,7 @@
 
 #include "sim/memory/unit_memory.h"
 #include "sim/signal/readout.h"
+#include "sim/stepper/loop_response.h"
 #include "sim/stepper/settled_response.h"
 #include "sim/stepper/step_inputs.h"
 #include "sim/stepper/thermal_stepper.h"
@@ -18,14 +19,15 @@ namespace beamgyro::internal {
 inline constexpr double kLongestStep = 1e5;  // [s]
 
 /// One gyro that goes on step by step, without knowing what comes later: the
-/// quasi-static model of simulate_quasistatic(). At the samples of a scenario
-/// with straight lines it shows what the run shows, to the tolerances of both.
+/// model of simulate_quasistatic() or simulate_envelope(). At the samples of a
+/// scenario with straight lines it shows what the run shows, to the tolerances
+/// of both. In the envelope it starts at rest, as a run does.
 /// A copy is a snapshot. Use one object in one thread at a time.
 class GyroStepper {
  public:
   /// Starts settled on the inputs of `start`. Throws std::invalid_argument for
-  /// a number of `start` that is out of range, and SimulationFailure where the
-  /// gyro cannot work.
+  /// a number of `start` that is out of range and for the envelope of a unit
+  /// with memory, and SimulationFailure where the gyro cannot work.
   GyroStepper(std::shared_ptr<const StepperModel> model,
               const StepperStart& start);
 
@@ -48,6 +50,13 @@ class GyroStepper {
                          bool powered) {
     return step(duration, held, held, powered);
   }
+
+  /// step() in two parts, for steps of several gyros that all succeed or none:
+  /// prepare() throws as step() and changes nothing, and commit() makes the
+  /// prepared step.
+  void prepare(double duration, const StepInputs& from, const StepInputs& to,
+               bool powered);
+  const StepSample& commit();
 
   /// The inputs at the end of the last step.
   const StepInputs& inputs() const { return state_.inputs; }
@@ -77,6 +86,7 @@ class GyroStepper {
     bool powered;
     CaseFilter motion;
     std::optional<UnitMemory> memory = {};
+    std::optional<LoopResponse::State> loops = {};  // in the envelope
     PowerCycle cycle = {};
 
     double time() const {
@@ -90,12 +100,16 @@ class GyroStepper {
     double drive_frequency, drive_voltage, quadrature;
   };
 
-  static State first_state(const TrimmedGyro& gyro, const StepperStart& start);
+  State first_state() const;
   static MemoryState memory_of(const State& state);
   void switch_power(State& state, bool powered) const;
   void heat(State& state, double duration, const StepInputs& from,
             const StepInputs& to) const;
+  void advance_loops(State& state, double duration, const StepInputs& from,
+                     const StepInputs& to);
   StepSignals signals_of(const State& state);
+  StepSignals loop_signals_of(const State& state);
+  static NoiseConditions conditions_of(const State& state);
   double noise_of(const State& state) const;  // [rad/s]
   Channels channels_of(const State& state, const StepSignals& signals) const;
   void put_measured(const State& state, const StepSignals& signals,
@@ -108,10 +122,11 @@ class GyroStepper {
   StepperStart start_;
   ThermalStepper thermal_;
   SettledResponse response_;
+  std::optional<LoopResponse> loops_;  // in the envelope
   Readout readout_;
-  double white_noise_;  // of output and quadrature [rad/sqrt(s)]
   std::optional<TickNoise> noise_;
   State state_, next_;
+  StepSignals next_signals_{};
   StepSample sample_{};
 };
 

@@ -20,8 +20,14 @@ struct StepInputs {
   friend bool operator==(const StepInputs&, const StepInputs&) = default;
 };
 
+enum class StepFidelity {
+  kQuasistatic,  // beam and loops are settled at every moment
+  kEnvelope,     // amplitudes and loops over time
+};
+
 /// How a gyro that is stepped begins, and what stays the same.
 struct StepperStart {
+  StepFidelity fidelity = StepFidelity::kQuasistatic;
   std::uint64_t seed = 0;
   std::uint32_t device = 0, run = 0;  // of the random streams
   bool noise = true;

@@ -46,10 +46,11 @@ int main(int, char** argv) {
 }
 """
 GUIDE = (ROOT / "docs/guide/library.md").read_text()
+LOOP_GUIDE = (ROOT / "docs/guide/in_the_loop.md").read_text()
 
 
-def block_of_guide(kind):
-    return re.search(rf"^```{kind}\n(.*?)^```$", GUIDE,
+def block_of_guide(kind, guide=GUIDE):
+    return re.search(rf"^```{kind}\n(.*?)^```$", guide,
                      re.MULTILINE | re.DOTALL)[1]
 
 
@@ -59,6 +60,8 @@ project(user LANGUAGES CXX)
 find_package(beamgyro 0.1 REQUIRED)
 add_executable(few user.cpp)
 target_link_libraries(few PRIVATE beamgyro::sim)
+add_executable(loop loop.cpp)
+target_link_libraries(loop PRIVATE beamgyro::sim)
 add_executable(user {every_call})
 target_link_libraries(user PRIVATE beamgyro::beamgyro)
 foreach(part dataset compensation validation)
@@ -165,6 +168,7 @@ class Library(Call):
         cls.call("cmake", "--install", BUILD, "--prefix", cls.prefix)
         (cls.dir / "user.cpp").write_text(TEN_LINES)
         (cls.dir / "version.cpp").write_text(VERSION)
+        (cls.dir / "loop.cpp").write_text(block_of_guide("cpp", LOOP_GUIDE))
         (cls.dir / "CMakeLists.txt").write_text(USER_CMAKE.format(
             every_call=ROOT / "examples/library/files_of_commands.cpp"))
         cls.call("cmake", "-G", "Ninja", "-B", "build",
@@ -179,6 +183,12 @@ class Library(Call):
     def test_the_ten_lines_run_as_find_package_builds_them(self):
         said = self.call("build/few", SCENARIOS / "ten_minutes.toml")
         self.assertEqual(said.stdout, "3000 samples\n")
+
+    def test_a_gyro_is_stepped_as_in_the_guide(self):
+        said = self.call("build/loop", SCENARIOS / "devices/nominal.toml")
+        self.assertRegex(
+            said.stdout,
+            r"^after 1 s: 2\d\.\d deg/s, of which 0\.\d deg/s are bias$")
 
     def found(self, components):
         """What find_package says of components, in a project of C++."""

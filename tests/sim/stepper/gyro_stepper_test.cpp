@@ -78,6 +78,31 @@ INSTANTIATE_TEST_SUITE_P(All, OfDevice,
                                          "oven", "lifelike_with_modes"),
                          [](const auto& of) { return std::string(of.param); });
 
+TEST(GyroStepper, ASnapshotOfTheEnvelopeGoesOnLikeTheOriginal) {
+  const StepperStart start{.fidelity = StepFidelity::kEnvelope,
+                           .seed = 5,
+                           .noise_rate = 100,
+                           .powered = false};
+  GyroStepper original = stepper_of("nominal", start);
+  for (int k = 0; k < 150; ++k)
+    original.step(0.013, course(0.013 * k), course(0.013 * (k + 1)), k > 5);
+  GyroStepper copy = original;
+  GyroStepper restored = stepper_of("nominal", start);
+  restored.restore(original.state());
+  for (int k = 0; k < 100; ++k) {
+    const StepInputs from = course(k), to = course(k + 1);
+    for (GyroStepper* one : {&original, &copy, &restored})
+      one->step(k % 3 == 0 ? 0.004 : 0.25, from, to, k % 50 != 7);
+    ASSERT_EQ(copy.state(), original.state()) << k;
+    ASSERT_EQ(restored.state(), original.state()) << k;
+  }
+}
+
+TEST(GyroStepper, TheEnvelopeOfAGyroThatRemembersIsRefused) {
+  EXPECT_THROW(stepper_of("lifelike", {.fidelity = StepFidelity::kEnvelope}),
+               std::invalid_argument);
+}
+
 TEST(GyroStepper, FinerStepsShowTheSame) {
   const auto end_of = [](int parts) {
     GyroStepper stepper =

@@ -31,6 +31,9 @@ inline StepInputs inputs_at(const ScenarioPlan& plan, double t, bool before) {
 inline StepperStart start_of(const ScenarioPlan& plan) {
   StepperStart start;
   start.seed = plan.seed;
+  start.fidelity = plan.fidelity == Fidelity::kEnvelope
+                       ? StepFidelity::kEnvelope
+                       : StepFidelity::kQuasistatic;
   start.noise = plan.noise_enabled;
   start.noise_rate = plan.output_rate;
   start.stirred = plan.stirred;

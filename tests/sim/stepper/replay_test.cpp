@@ -42,7 +42,7 @@ constexpr const char* kGravity =
     "[acceleration.z]\nconstant_g = 1\n"
     "[acceleration.x]\npoints = [[0, 0], [50, 2], [90, -2]]\n";
 constexpr const char* kCycles =
-    "[power]\non_s = [10, 60.02]\noff_s = [40.017]\n";
+    "[power]\non_s = [10, 60.02, 80]\noff_s = [40.017, 70]\n";
 constexpr const char* kLongCycles =
     "[power]\non_s = [10, 400]\noff_s = [300.017]\n";
 constexpr const char* kAge = "[age]\nhours = 2000\n";
@@ -66,6 +66,16 @@ const std::vector<Case> kWithoutMemory = {
     {"Trimmed", "trimmed", kZigzag, kSteps, "600"},
     {"Stirred", "nominal", kStirred, "", "600"},
     {"SteepAmbient", "nominal", kSteep, "", "300"},
+};
+const std::vector<Case> kLoops = {
+    {"StartUp", "nominal", kRoom, "", "20"},
+    {"Steps", "nominal", kRoom, kSteps},
+    {"Points", "nominal", kRamp, kPoints},
+    {"Cross", "nominal", kRoom, kCross},
+    {"Gravity", "nominal", kRoom, kGravity},
+    {"PowerCycles", "nominal", kRoom, kCycles},
+    {"Rebalance", "rebalance", kRamp, kSteps},
+    {"Trimmed", "trimmed", kZigzag, kSteps},
 };
 const std::vector<Case> kWithMemory = {
     {"LifelikeRest", "lifelike", kRoom, "", "300"},
@@ -96,9 +106,19 @@ DeviceParameters fine_device(const char* name) {
              "temperature_sensor.resolution_K=0"});
 }
 
-void expect_the_run(const Case& c, double tolerance) {
+constexpr double kStartUpTolerance = 2e-3;  // [deg/s]
+
+bool starts_at(const ScenarioPlan& plan, double t) {
+  return std::ranges::any_of(plan.powered, [t](const PowerInterval& power) {
+    return t >= power.on && t < power.on + 1;
+  });
+}
+
+void expect_the_run(const Case& c, double tolerance,
+                    Fidelity fidelity = Fidelity::kQuasistatic) {
   const DeviceParameters device = fine_device(c.device);
-  const ScenarioPlan plan = scenario_from(c.extra, c.ambient, c.duration);
+  ScenarioPlan plan = scenario_from(c.extra, c.ambient, c.duration);
+  plan.fidelity = fidelity;
   const Recording run = simulated(plan, device);
   const std::vector<StepSample> steps =
       replayed(plan, stepper_model(make_gyro(device)));
@@ -111,10 +131,9 @@ void expect_the_run(const Case& c, double tolerance) {
       expect_near(stepped, column_values(run, column)[k], within, column, t);
     };
     ASSERT_NEAR(s.time, t, 1e-9);
-    expect("true_bias", s.true_bias, tolerance);
     for (std::size_t node = 0; node < kThermalNodeCount; ++node)
       expect(fmt::format("true_{}_temperature", kThermalNodeNames[node]),
-             s.true_node_temperature[node], 1e-5);
+             s.true_node_temperature[node], 2e-5);
     const bool powered = (run.status[k] & kUnpowered) == 0;
     if (s.powered != powered) {
       // At a switch the run shows what comes, and the step what was.
@@ -123,11 +142,16 @@ void expect_the_run(const Case& c, double tolerance) {
       })) << t;
       continue;
     }
-    expect("rate", s.rate, tolerance);
-    expect("temperature", s.temperature, 1e-5);
+    // The start-up of the loops, of which a run has its own error.
+    const double within = fidelity == Fidelity::kEnvelope && starts_at(plan, t)
+                              ? kStartUpTolerance
+                              : tolerance;
+    expect("true_bias", s.true_bias, within);
+    expect("rate", s.rate, within);
+    expect("temperature", s.temperature, 2e-5);
     expect("drive_frequency", s.drive_frequency, 1e-4);
-    expect("drive_voltage", s.drive_voltage, 1e-5);
-    expect("quadrature", s.quadrature, 1e-3);
+    expect("drive_voltage", s.drive_voltage, 1e-4);
+    expect("quadrature", s.quadrature, 5e-3);
     EXPECT_EQ(s.saturated, (run.status[k] & kOutputSaturated) != 0);
     if (testing::Test::HasFailure()) return;
   }
@@ -136,6 +160,11 @@ void expect_the_run(const Case& c, double tolerance) {
 class Replay : public testing::TestWithParam<Case> {};
 TEST_P(Replay, StepsCutAtEveryCornerShowWhatTheRunShows) {
   expect_the_run(GetParam(), 5e-6);
+}
+
+class ReplayOfLoops : public testing::TestWithParam<Case> {};
+TEST_P(ReplayOfLoops, StepsCutAtEveryCornerShowWhatTheRunShows) {
+  expect_the_run(GetParam(), 2e-5, Fidelity::kEnvelope);
 }
 
 class ReplayWithMemory : public testing::TestWithParam<Case> {};
@@ -148,6 +177,7 @@ std::string name_of(const testing::TestParamInfo<Case>& info) {
 }
 INSTANTIATE_TEST_SUITE_P(Of, Replay, testing::ValuesIn(kWithoutMemory),
                          name_of);
+INSTANTIATE_TEST_SUITE_P(Of, ReplayOfLoops, testing::ValuesIn(kLoops), name_of);
 INSTANTIATE_TEST_SUITE_P(Of, ReplayWithMemory, testing::ValuesIn(kWithMemory),
                          name_of);
 
