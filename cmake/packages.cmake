@@ -38,6 +38,7 @@ specifications to run and to copy from, and its documentation.")
 # The name of the shared library with the version of its interface, as Debian has it.
 set(SHARED_PACKAGE libbeamgyro${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
 set(CPACK_DEBIAN_DEBIAN_LIB_PACKAGE_NAME ${SHARED_PACKAGE})
 set(CPACK_DEBIAN_DEBIAN_LIB_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_DEBIAN_LIB_PACKAGE_SHLIBDEPS ON)
