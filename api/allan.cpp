@@ -17,6 +17,7 @@
 #include "compensation/scoring/noise_coefficients.h"
 #include "config/option_message.h"
 #include "config/range.h"
+#include "dataset/files/file_ending.h"
 #include "dataset/files/json_text.h"
 #include "dataset/files/text_file.h"
 #include "dataset/log/csv_file.h"
@@ -196,9 +197,8 @@ AllanSignal signal_of_recording(const AllanQuestion& asked,
   return signal;
 }
 
-/// A recording, or else a series in a CSV.
 AllanSignal signal_of(const AllanQuestion& asked) {
-  if (std::filesystem::path(asked.file).extension() != ".csv") {
+  if (file_ending(asked.file) != ".csv") {
     std::vector<std::string> warnings;
     AllanSignal signal = signal_of_recording(
         asked, beamgyro::read_recording(asked.file, &warnings));

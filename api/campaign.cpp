@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "api/shared_maker.h"
 #include "sim/campaign/campaign.h"
 
 namespace beamgyro {
@@ -17,7 +18,7 @@ std::optional<long> as_long(std::optional<std::uint32_t> number) {
 }
 
 Campaign campaign_of(internal::CampaignPlan campaign) {
-  return Campaign(
+  return internal::SharedMaker::make<Campaign>(
       std::make_shared<const internal::CampaignPlan>(std::move(campaign)));
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "api/compensators.h"
+#include "api/shared_maker.h"
 #include "compensation/compensator/compensator.h"
 #include "compensation/compensator/compensator_file.h"
 #include "config/option_message.h"
@@ -45,7 +46,7 @@ Compensator compensator_of_text(std::string text, const std::string& name,
   state->text = std::move(text);
   state->name = std::filesystem::path(name).filename().string();
   state->file = std::move(file);
-  return Compensator(std::move(state));
+  return internal::SharedMaker::make<Compensator>(std::move(state));
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "api/program_version.h"
 #include "api/reported_progress.h"
 #include "dataset/files/atomic_file.h"
+#include "dataset/files/file_ending.h"
 #include "dataset/netcdf/curves_file.h"
 #include "parallel/work_queue.h"
 #include "sim/campaign/campaign.h"
@@ -171,7 +172,7 @@ CampaignCurves characterise(const Campaign& campaign,
 
 void write_curves(const CampaignCurves& curves, const Campaign& campaign,
                   const std::filesystem::path& path) {
-  if (path.extension() == ".csv")
+  if (internal::file_ending(path) == ".csv")
     internal::write_text_file(path, curves.csv);
   else
     internal::write_curves_file(

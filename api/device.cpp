@@ -11,6 +11,7 @@
 
 #include "api/beam_temperatures.h"
 #include "api/scenario_state.h"
+#include "api/shared_maker.h"
 #include "config/overrides.h"
 #include "config/units.h"
 #include "sim/dynamics/characteristic.h"
@@ -29,7 +30,7 @@ Device device_of(internal::LoadedDevice loaded, std::string name,
   state->name = std::move(name);
   state->overrides = std::move(overrides);
   state->device = loaded.device;
-  return Device(std::move(state));
+  return internal::SharedMaker::make<Device>(std::move(state));
 }
 
 std::vector<SpuriousCrossing> crossings_of(
@@ -63,6 +64,10 @@ Device Device::parse(const std::string& text, const std::string& name,
 Device Device::with(const std::vector<std::string>& overrides) const {
   return parse(text(), name(),
                internal::merged_overrides(content().overrides, overrides));
+}
+
+Device Device::with(std::string_view key, const Value& value) const {
+  return with({override_of(key, value)});
 }
 
 std::string Device::text() const { return content().text; }

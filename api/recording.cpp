@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "api/program_version.h"
+#include "dataset/files/file_ending.h"
 #include "dataset/files/text_file.h"
 #include "dataset/log/recording_csv.h"
 #include "dataset/netcdf/recording_reader.h"
@@ -23,7 +24,7 @@ Recording recording_of_csv(const std::filesystem::path& path) {
 
 Recording read_recording(const std::filesystem::path& path,
                          std::vector<std::string>* warnings) {
-  if (path.extension() == ".csv") return recording_of_csv(path);
+  if (internal::file_ending(path) == ".csv") return recording_of_csv(path);
   bool has_checksum = false;
   Recording recording = internal::read_recording(path, &has_checksum);
   if (!has_checksum && warnings != nullptr)

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "api/scenario_state.h"
+#include "api/shared_maker.h"
 #include "config/overrides.h"
 #include "dataset/files/text_file.h"
 #include "sim/scenario/simulation.h"
@@ -36,7 +37,7 @@ Scenario scenario_of(internal::InputText scenario, internal::InputText device,
   state->device = std::move(device);
   state->device_overrides = std::move(device_overrides);
   state->overrides = std::move(overrides);
-  return Scenario(std::move(state));
+  return internal::SharedMaker::make<Scenario>(std::move(state));
 }
 
 }  // namespace
@@ -49,7 +50,7 @@ Scenario Scenario::read(const std::filesystem::path& file,
   state->device = {state->loaded.device_text,
                    state->loaded.scenario.device_file.string()};
   state->overrides = overrides;
-  return Scenario(std::move(state));
+  return internal::SharedMaker::make<Scenario>(std::move(state));
 }
 
 Scenario Scenario::read(const std::filesystem::path& file, const Device& device,
@@ -78,6 +79,10 @@ Scenario Scenario::with(const std::vector<std::string>& overrides) const {
   return scenario_of(
       content().scenario, content().device, content().device_overrides,
       internal::merged_overrides(all, overrides), content().loaded.profiles);
+}
+
+Scenario Scenario::with(std::string_view key, const Value& value) const {
+  return with({override_of(key, value)});
 }
 
 Scenario Scenario::with_device(const Device& device) const {

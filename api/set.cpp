@@ -14,6 +14,7 @@
 #include "api/program_version.h"
 #include "api/reported_progress.h"
 #include "api/set_defects.h"
+#include "api/shared_maker.h"
 #include "dataset/set/manifest.h"
 #include "dataset/set/set_view.h"
 #include "dataset/set/shard/shard_reader.h"
@@ -124,7 +125,7 @@ Set Set::open(const std::filesystem::path& directory) {
   state->directory = directory;
   state->manifest = internal::finished_manifest(directory);
   state->failures = internal::failures_of(state->manifest);
-  return Set(std::move(state));
+  return internal::SharedMaker::make<Set>(std::move(state));
 }
 
 std::filesystem::path Set::directory() const { return content().directory; }

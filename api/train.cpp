@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "api/compensators.h"
+#include "api/shared_maker.h"
 #include "compensation/compensator/compensator_file.h"
 #include "compensation/compensator/run_comparison.h"
 #include "compensation/rows/run_source.h"
@@ -88,8 +89,8 @@ TrainedCompensator trained(const Model& model,
   state->name = "compensator.json";
   require_that_it_reads(*state);
   std::vector<std::string> warnings = state->compensator.provenance.warnings;
-  return {Compensator(std::move(state)), std::move(warnings),
-          std::move(report)};
+  return {internal::SharedMaker::make<Compensator>(std::move(state)),
+          std::move(warnings), std::move(report)};
 }
 
 std::vector<std::string> names_of(
@@ -114,13 +115,14 @@ internal::RunSource source_of_recordings(
 }  // namespace
 
 Model Model::read(const std::filesystem::path& file) {
-  return Model(
+  return internal::SharedMaker::make<Model>(
       std::make_shared<const internal::ModelSpec>(internal::read_model(file)));
 }
 
 Model Model::parse(const std::string& text, const std::string& name) {
-  return Model(std::make_shared<const internal::ModelSpec>(
-      internal::read_model(internal::ConfigDocument::parse(text, name))));
+  return internal::SharedMaker::make<Model>(
+      std::make_shared<const internal::ModelSpec>(
+          internal::read_model(internal::ConfigDocument::parse(text, name))));
 }
 
 std::string Model::text() const { return content().text; }

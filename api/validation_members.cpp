@@ -114,7 +114,9 @@ constexpr std::array kMembers{
 
 unsigned subjects_of(const ValidationOptions& options) {
   return (options.device ? kOnDevice : 0U) |
-         (options.recordings.empty() ? 0U : kOnRecordings) |
+         (options.recordings.empty() && options.recordings_in_memory.empty()
+              ? 0U
+              : kOnRecordings) |
          (options.set ? kOnSet : 0U);
 }
 

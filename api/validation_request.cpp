@@ -8,10 +8,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "api/compensators.h"
 #include "api/program_version.h"
 #include "api/scenario_state.h"
 #include "api/validation_members.h"
 #include "compensation/compensator/compensator_file.h"
+#include "compensation/compensator/run_comparison.h"
 #include "config/option_message.h"
 #include "dataset/files/sha256.h"
 #include "dataset/files/text_file.h"
@@ -56,6 +58,7 @@ ValidationRequest::ValidationRequest(CompensatorSource asked,
   if (options.baseline_result) read_baseline();
   if (options.set) open_set();
   hash_recordings(keeps_inputs);
+  hash_recordings_in_memory();
   read_specification();
   read_own_metrics();
   if (options.campaign) read_campaign();
@@ -129,6 +132,13 @@ void ValidationRequest::hash_recordings(bool keeps_inputs) {
       add_file("runs", path, read_text_file(path));
     else
       inputs.push_back({"runs", path, sha256_of_file(path), ""});
+  }
+}
+
+void ValidationRequest::hash_recordings_in_memory() {
+  for (const NamedRecording& run : options.recordings_in_memory) {
+    require_sound(run.recording, run.name);
+    inputs.push_back({"runs", run.name, measured_sha256(run.recording), ""});
   }
 }
 

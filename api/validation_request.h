@@ -62,6 +62,7 @@ struct ValidationRequest {
   void read_own_metrics();
   void open_set();
   void hash_recordings(bool keeps_inputs);
+  void hash_recordings_in_memory();
   FittedCompensator read_compensator_of(const std::string& group,
                                         const std::filesystem::path& path);
   void read_baseline();

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "api/validation_request.h"
+#include "compensation/compensator/run_comparison.h"
+#include "dataset/files/sha256.h"
 #include "include/beamgyro/recording.h"
 #include "parallel/work_queue.h"
 #include "sim/scenario/run_warnings.h"
@@ -66,6 +68,25 @@ std::vector<std::string> warnings_about(const FittedCompensator* compensator,
   return warnings;
 }
 
+// A curve is that of one device.
+std::vector<std::string> warnings_about_device(
+    const FittedCompensator* compensator, const Evidence& evidence,
+    const std::optional<RunSource>& set) {
+  if (compensator == nullptr) return {};
+  std::vector<std::string> others;
+  for (const EvidenceRun& run : evidence.runs)
+    if (set ? is_of_other_devices(compensator->provenance, set->set.value())
+            : is_of_another_device(compensator->provenance, *run.recording))
+      others.push_back(run.name);
+  if (others.empty()) return {};
+  return {fmt::format(
+      "{}{}: of another device than the one that the compensator was trained "
+      "on; a curve is that of one device",
+      others.front(),
+      others.size() == 1 ? ""
+                         : fmt::format(" and {} more", others.size() - 1))};
+}
+
 // Said of code whose maker can know what it is judged on.
 constexpr std::string_view kPublicSeed =
     " Judged with the public seed of the qualification, whose runs code can "
@@ -104,6 +125,21 @@ struct Validator::State : ValidationRequest {
                         ready ? *ready : *other,
                         options.against->filename().string(), result, evidence,
                         threads);
+  }
+
+  // Of the files, then of those in memory.
+  TrainingRun recording(std::size_t k, std::vector<std::string>* warned) const {
+    if (k < options.recordings.size()) {
+      const fs::path& path = options.recordings[k];
+      return {.name = path.string(),
+              .sha256 = sha256_of_file(path),
+              .recording = beamgyro::read_recording(path, warned)};
+    }
+    const NamedRecording& run =
+        options.recordings_in_memory[k - options.recordings.size()];
+    return {.name = run.name,
+            .sha256 = measured_sha256(run.recording),
+            .recording = run.recording};
   }
 
   std::vector<std::string> warnings_about_isolation() const {
@@ -230,9 +266,10 @@ CompletedValidation Validator::State::validated(
     done.evidence = std::move(found.evidence);
   } else {
     done.evidence = recorded_evidence(
-        s.options.recordings, answering, threads,
-        [](const fs::path& path, std::vector<std::string>* warnings) {
-          return beamgyro::read_recording(path, warnings);
+        s.options.recordings.size() + s.options.recordings_in_memory.size(),
+        answering, threads,
+        [&s](std::size_t k, std::vector<std::string>* warned) {
+          return s.recording(k, warned);
         },
         result.warnings);
     s.require_same_recordings();
@@ -240,6 +277,9 @@ CompletedValidation Validator::State::validated(
       result.warnings.push_back(std::move(text));
   }
   for (std::string& text : warnings_about(known, done.evidence.after))
+    result.warnings.push_back(std::move(text));
+  for (std::string& text :
+       warnings_about_device(known, done.evidence.after, s.set))
     result.warnings.push_back(std::move(text));
   for (std::string& text : s.warnings_about_isolation())
     result.warnings.push_back(std::move(text));

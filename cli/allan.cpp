@@ -54,12 +54,11 @@ void add_allan(CommandLine& program) {
   command.number(
       {"--to", "S", "Last time to use, in seconds", "the last sample"},
       arguments.options.to_s);
-  command.choices({"--kind", "KIND",
-                   "Deviations to compute, between commas or repeated: adev, "
-                   "oadev, mdev, hdev, ohdev, totdev",
-                   "adev,oadev"},
-                  arguments.options.kinds,
-                  {"adev", "oadev", "mdev", "hdev", "ohdev", "totdev"});
+  command.choices(
+      {"--kind", "adev|oadev|mdev|hdev|ohdev|totdev",
+       "Deviations to compute, between commas or repeated", "adev,oadev"},
+      arguments.options.kinds,
+      {"adev", "oadev", "mdev", "hdev", "ohdev", "totdev"});
   command.choice({"--taus", "octave|decade|all",
                   "Averaging times: 1, 2, 4, 8 samples and so on; 1, 2, 4, 10, "
                   "20, 40; or 1, 2, 3",

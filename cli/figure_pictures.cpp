@@ -12,6 +12,7 @@
 
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
+#include "dataset/files/file_ending.h"
 #include "validation/external/child_process.h"
 
 namespace beamgyro::internal {
@@ -25,14 +26,6 @@ constexpr double kLongestDrawing = 600.0;  // [s]
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 // How the script ends when it says why in one line.
 constexpr int kRefused = 2, kNotPossible = 3;
-
-// The ending of a name in small letters: "PLOT.PNG" is a PNG.
-std::string picture_ending(const fs::path& path) {
-  std::string ending = path.extension().string();
-  for (char& letter : ending)
-    if (letter >= 'A' && letter <= 'Z') letter += 'a' - 'A';
-  return ending;
-}
 
 // What an ended process wrote to its standard error.
 std::string errors_of(ChildProcess& process) {
@@ -87,7 +80,7 @@ void run_script(const std::vector<std::string>& words, double most_seconds,
 void draw_into(AtomicFile& picture, const fs::path& path,
                std::vector<std::string> words, std::string_view input = "") {
   words.push_back("--output=" + picture.partial_path().string());
-  words.push_back("--format=" + picture_ending(path).substr(1));
+  words.push_back("--format=" + file_ending(path).substr(1));
   run_script(words, kLongestDrawing, input);
   picture.publish();
 }
@@ -120,7 +113,7 @@ void draw_figures(const std::string& result, const fs::path& directory) {
 }
 
 void require_picture_name(std::string_view option, const fs::path& path) {
-  const std::string ending = picture_ending(path);
+  const std::string ending = file_ending(path);
   if (ending != ".png" && ending != ".svg")
     throw std::invalid_argument(fmt::format(
         "{} {}: unknown kind of picture \"{}\"; expected a name that ends in "

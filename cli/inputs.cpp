@@ -18,6 +18,7 @@
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/directory.h"
+#include "dataset/files/file_ending.h"
 #include "dataset/files/sha256.h"
 
 namespace beamgyro::internal {
@@ -72,7 +73,7 @@ Recording load_recording(const std::filesystem::path& path) {
 
 void require_ending(const fs::path& path,
                     const std::vector<std::string>& endings) {
-  const std::string extension = path.extension().string();
+  const std::string extension = file_ending(path);
   if (std::ranges::count(endings, extension) > 0) return;
   throw std::invalid_argument(fmt::format(
       "-o {}: unknown kind of file \"{}\"; expected a name that ends in {}",
@@ -84,7 +85,7 @@ void require_recording_name(const fs::path& path) {
 }
 
 void require_directory_name(const fs::path& path, std::string_view option) {
-  const std::string extension = path.extension().string();
+  const std::string extension = file_ending(path);
   for (const char* ending :
        {".h5", ".nc", ".csv", ".json", ".toml", ".c", ".h"}) {
     if (extension == ending)
@@ -114,7 +115,7 @@ void require_json_output(const std::string& name,
                          std::string_view option) {
   if (name.empty()) return;
   require_output(name, inputs);
-  const std::string extension = fs::path(name).extension().string();
+  const std::string extension = file_ending(name);
   for (const char* other : {".h5", ".nc", ".csv", ".toml", ".c", ".h"})
     if (extension == other)
       throw std::invalid_argument(fmt::format(

@@ -2,7 +2,7 @@
 include(CMakePackageConfigHelpers)
 set(NO_CACHES PATTERN __pycache__ EXCLUDE PATTERN .*_cache EXCLUDE)
 
-# Components: runtime, dev, python; debian_dev is that of the package libbeamgyro-dev.
+# Components: runtime, dev, python; debian_dev and debian_lib are those of the packages libbeamgyro-dev and libbeamgyro0.1.
 install(TARGETS beamgyro RUNTIME COMPONENT runtime)
 install(DIRECTORY scenarios specs examples DESTINATION ${CMAKE_INSTALL_DATADIR}/beamgyro COMPONENT runtime
   USE_SOURCE_PERMISSIONS ${NO_CACHES})
@@ -27,15 +27,19 @@ get_property(LIBRARIES GLOBAL PROPERTY BEAMGYRO_LIBRARIES)
 list(TRANSFORM LIBRARIES PREPEND -l OUTPUT_VARIABLE LIBRARY_FLAGS)
 list(JOIN LIBRARY_FLAGS " " LIBRARY_FLAGS)
 
-# install_library(<component> <library folder>): headers, libraries, and what find_package and pkg-config read.
-function(install_library component library_dir)
+# install_library(<component> <component of the shared library> <library folder>): headers, libraries, and what find_package and pkg-config read.
+function(install_library component shared_component library_dir)
   set(options COMPONENT ${component} ${ARGN})
   set(made ${PROJECT_BINARY_DIR}/${component})
   set(package_dir ${library_dir}/cmake/beamgyro)
   install(DIRECTORY include/beamgyro DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${options})  # no header of the rooms
   install(TARGETS ${LIBRARIES} beamgyro_api EXPORT ${component}
     ARCHIVE DESTINATION ${library_dir} ${options})
+  install(TARGETS beamgyro_shared EXPORT ${component}_shared
+    LIBRARY DESTINATION ${library_dir} COMPONENT ${shared_component} NAMELINK_COMPONENT ${component} ${ARGN})
   install(EXPORT ${component} FILE beamgyroTargets.cmake NAMESPACE beamgyro:: DESTINATION ${package_dir} ${options})
+  install(EXPORT ${component}_shared FILE beamgyroSharedTarget.cmake NAMESPACE beamgyro::
+    DESTINATION ${package_dir} ${options})
   configure_package_config_file(cmake/beamgyroConfig.cmake.in ${made}/beamgyroConfig.cmake
     INSTALL_DESTINATION ${package_dir})
   install(FILES ${made}/beamgyroConfig.cmake ${PROJECT_BINARY_DIR}/beamgyroConfigVersion.cmake
@@ -45,6 +49,6 @@ function(install_library component library_dir)
   configure_file(cmake/beamgyro.pc.in ${made}/beamgyro.pc @ONLY)
   install(FILES ${made}/beamgyro.pc DESTINATION ${library_dir}/pkgconfig ${options})
 endfunction()
-install_library(dev ${CMAKE_INSTALL_LIBDIR})
+install_library(dev dev ${CMAKE_INSTALL_LIBDIR})
 # GNUInstallDirs has this folder for the prefix /usr only, which cpack sets later.
-install_library(debian_dev lib/${CMAKE_LIBRARY_ARCHITECTURE} EXCLUDE_FROM_ALL)
+install_library(debian_dev debian_lib lib/${CMAKE_LIBRARY_ARCHITECTURE} EXCLUDE_FROM_ALL)

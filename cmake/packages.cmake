@@ -1,11 +1,11 @@
-# cpack: the Debian packages beamgyro, libbeamgyro-dev and python3-beamgyro; see scripts/package.sh.
+# cpack: the Debian packages beamgyro, libbeamgyro0.1, libbeamgyro-dev and python3-beamgyro; see scripts/package.sh.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME beamgyro)
 set(CPACK_PACKAGE_VENDOR "beamgyro")
 set(CPACK_PACKAGE_CONTACT "beamgyro authors <beamgyro@users.noreply.github.com>")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL runtime debian_dev)
+set(CPACK_COMPONENTS_ALL runtime debian_lib debian_dev)
 if(TARGET _core)
   list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
@@ -35,17 +35,32 @@ firmware or as parameters of autopilots.
 This package has the program with devices, scenarios, campaigns, models and
 specifications to run and to copy from, and its documentation.")
 
+# The name of the shared library with the version of its interface, as Debian has it.
+set(SHARED_PACKAGE libbeamgyro${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
+set(CPACK_DEBIAN_DEBIAN_LIB_PACKAGE_NAME ${SHARED_PACKAGE})
+set(CPACK_DEBIAN_DEBIAN_LIB_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_DEBIAN_LIB_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_DEBIAN_LIB_DESCRIPTION "simulator of vibrating-beam piezo gyros - shared library
+Simulates a vibrating-beam piezoelectric gyro, from its beam, patches, glue and
+mount up to the volts at its pin, and trains and scores compensators of its
+thermal drift.
+
+This package has the shared library, for programs that are linked with it.")
+
 set(CPACK_DEBIAN_DEBIAN_DEV_PACKAGE_NAME libbeamgyro-dev)
 set(CPACK_DEBIAN_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEBIAN_DEV_PACKAGE_DEPENDS
-  "libsundials-dev (>= 6.4), libhdf5-dev (>= 1.10), libfmt-dev, libssl-dev (>= 3.0), libdeflate-dev")
+  "${SHARED_PACKAGE} (= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}), libsundials-dev (>= 6.4), libhdf5-dev (>= 1.10), libfmt-dev, libssl-dev (>= 3.0), libdeflate-dev")
 set(CPACK_DEBIAN_DEBIAN_DEV_PACKAGE_SUGGESTS "beamgyro, cmake, pkg-config")
 set(CPACK_DEBIAN_DEBIAN_DEV_DESCRIPTION "simulator of vibrating-beam piezo gyros - C++ library
 Simulates a vibrating-beam piezoelectric gyro, from its beam, patches, glue and
 mount up to the volts at its pin, and trains and scores compensators of its
 thermal drift.
 
-This package has the headers and the static libraries, what find_package of
+This package has the headers, the static libraries and the link to the shared
+one, what find_package of
 CMake and pkg-config read, and the C header of plug-in compensators.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-beamgyro)

@@ -192,6 +192,8 @@ void reject_override(const std::string& argument, const std::string& message) {
   reject(argument, message);
 }
 
+void require_override_key(std::string_view key) { split_key(key, key); }
+
 std::string_view key_of_override(std::string_view text) {
   return trimmed(text.substr(0, text.find('=')));
 }

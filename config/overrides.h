@@ -15,6 +15,9 @@ struct OverrideSet;
 [[noreturn]] void reject_override(const std::string& argument,
                                   const std::string& message);
 
+/// Throws OptionError for a text that is not bare keys joined by dots.
+void require_override_key(std::string_view key);
+
 /// Returns the key of KEY=VALUE, without the blanks around it.
 std::string_view key_of_override(std::string_view text);
 

@@ -71,7 +71,9 @@ _beamgyro() {
   elif [ "$previous" = "=" ] && ((COMP_CWORD > 2)); then
     previous=${COMP_WORDS[COMP_CWORD - 2]}
   fi
-  if [ -z "$command" ] || [ "$command" = help ]; then
+  if [ -z "$command" ] && [[ $word == -* ]]; then
+    _beamgyro_answer "$word" "$(_beamgyro_options "")"
+  elif [ -z "$command" ] || [ "$command" = help ]; then
     _beamgyro_answer "$word" "$(_beamgyro_commands)"
   elif kind=$(_beamgyro_values "$command:$previous"); then
     _beamgyro_answer "$word" "$kind"

@@ -20,7 +20,8 @@ beamgyro ($version) unstable; urgency=medium
 TEXT
 }
 
-for pair in runtime=beamgyro debian_dev=libbeamgyro-dev python=python3-beamgyro; do
+for pair in runtime=beamgyro "debian_lib=libbeamgyro${version%.*}" \
+  debian_dev=libbeamgyro-dev python=python3-beamgyro; do
   root=$stage/${pair%=*} package=${pair#*=}
   [ -d "$root" ] || continue
   documents=$root/usr/share/doc/$package

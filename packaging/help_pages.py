@@ -145,11 +145,11 @@ def completion(helps):
     """The script of bash: tables from the help, before what reads them."""
     options, values, arguments = [], [], []
     for command, text in helps.items():
-        if not command:
-            continue
         found = list(options_of(text))
         names = " ".join(name for both, _ in found for name in both)
-        options.append(f'    {command}) echo "{names}" ;;')
+        options.append(f'    "{command}") echo "{names}" ;;')
+        if not command:
+            continue
         for both, value in found:
             if value:
                 cases = " | ".join(f"{command}:{name}" for name in both)

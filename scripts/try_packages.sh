@@ -55,7 +55,10 @@ inside 'cd /tmp
   beamgyro run /usr/share/beamgyro/scenarios/ten_minutes.toml -o run.h5
   beamgyro info run.h5 | head -n 3
   beamgyro validate --list-metrics | wc -l
-  if ldd /usr/bin/beamgyro | grep "not found"; then exit 1; fi
+  library=$(ldconfig -p | sed -n "s/.*libbeamgyro.so.0.1 .*=> //p")
+  for file in /usr/bin/beamgyro "${library:?}"; do
+    if ldd "$file" | grep "not found"; then exit 1; fi
+  done
   man beamgyro | grep -c "beamgyro"
   man beamgyro-run | grep -- "--fidelity"
   . /usr/share/bash-completion/completions/beamgyro

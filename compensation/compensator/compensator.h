@@ -51,6 +51,9 @@ struct Provenance {
   std::vector<SourceFile> held_out;
   // In place of files: the set that the runs come from.
   std::optional<TrainingSet> training_set, held_out_set;
+  // SHA-256 of stated_device() of the one simulated device that the training
+  // files are of. Empty of logs, of several devices and of sets.
+  std::string device_sha256 = {};
   std::string model_text;  // model file byte for byte as read
   std::uint64_t seed = 0;
   std::string stop_reason;

@@ -110,6 +110,7 @@ Json json_of(const std::optional<CrossValidated>& cv) {
 Json json_of(const Provenance& p) {
   Json json{{"method", p.method}};
   put_training_runs(p, json);
+  if (!p.device_sha256.empty()) json["device_sha256"] = p.device_sha256;
   json.update(Json{
       {"model", p.model_text},
       {"seed", p.seed},
@@ -151,6 +152,8 @@ Provenance read_provenance(const JsonNode& node) {
   Provenance p;
   p.method = node.at("method").text();
   read_training_runs(node, p);
+  if (node.has("device_sha256"))
+    p.device_sha256 = node.at("device_sha256").text();
   p.model_text = node.at("model").text();
   p.seed = node.at("seed").unsigned_integer();
   p.stop_reason = node.at("stop_reason").text();

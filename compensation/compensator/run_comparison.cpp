@@ -229,6 +229,21 @@ bool was_used_in_training(const Provenance& provenance, const TrainingSet& set,
       });
 }
 
+bool is_of_another_device(const Provenance& provenance,
+                          const Recording& recording) {
+  if (provenance.device_sha256.empty()) return false;
+  const std::string device = stated_device(recording);
+  return !device.empty() && sha256(device) != provenance.device_sha256;
+}
+
+bool is_of_other_devices(const Provenance& provenance, const TrainingSet& set) {
+  const std::optional<TrainingSet>& trained = provenance.training_set;
+  return trained && trained->device_numbers.size() == 1 &&
+         is_same_set(*trained, set) &&
+         std::ranges::count(set.device_numbers,
+                            trained->device_numbers.front()) == 0;
+}
+
 bool may_have_used(const Provenance& provenance, const TrainingSet& set) {
   const std::optional<TrainingSet>& part = provenance.training_set;
   return part && part->device_numbers.empty() && is_same_set(*part, set);

@@ -69,6 +69,14 @@ bool was_used_in_training(const Provenance& provenance,
 bool was_used_in_training(const Provenance& provenance, const TrainingSet& set,
                           const TrainingRun& run);
 
+/// Returns whether training is known to have used one device alone, another one
+/// than that of the recording.
+bool is_of_another_device(const Provenance& provenance,
+                          const Recording& recording);
+
+/// The same of the devices that are selected of `set`.
+bool is_of_other_devices(const Provenance& provenance, const TrainingSet& set);
+
 /// Returns whether the compensator was trained on `set` by an older program
 /// that did not record on which devices.
 bool may_have_used(const Provenance& provenance, const TrainingSet& set);

@@ -4,43 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <sstream>
 #include <stdexcept>
-#include <string_view>
+#include <utility>
 
 #include "compensation/training/cautions.h"
+#include "dataset/recording/stated_values.h"
 
 namespace beamgyro::internal {
-namespace {
-
-// Returns what tells simulated devices apart: the text of the device and the
-// keys of it that the run replaced.
-std::string device_of(const Recording& recording) {
-  constexpr std::string_view kTables[] = {"beam.",
-                                          "patches.",
-                                          "bond.",
-                                          "mount.",
-                                          "air.",
-                                          "drive.",
-                                          "readout.",
-                                          "thermal.",
-                                          "noise.",
-                                          "memory.",
-                                          "temperature_sensor.",
-                                          "loop_channels.",
-                                          "spurious_mode."};
-  std::string text = recording.device_text;
-  std::istringstream lines(recording.overrides_text);
-  for (std::string line; std::getline(lines, line);)
-    if (!line.starts_with("noise.enabled") &&
-        std::ranges::any_of(kTables, [&](std::string_view table) {
-          return line.starts_with(table);
-        }))
-      text += '\n' + line;
-  return text;
-}
-
-}  // namespace
 
 RunSource noting(const RunSource& runs, RunFacts& facts) {
   return {
@@ -59,8 +29,11 @@ RunSource noting(const RunSource& runs, RunFacts& facts) {
                                           static_cast<double>(time.size() - 1)
                                     : HUGE_VAL);
           }
-          if (!run.recording.device_text.empty())
-            facts.devices.insert(device_of(run.recording));
+          if (std::string device = stated_device(run.recording);
+              !device.empty())
+            facts.devices.insert(std::move(device));
+          else
+            facts.states_devices = false;
           facts.may_remember =
               facts.may_remember || may_remember(run.recording);
           facts.age = std::max(facts.age, stated_age(run.recording));

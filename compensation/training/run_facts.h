@@ -20,7 +20,8 @@ struct RunFacts {
   double coarsest_resolution = 0.0;  // [K], of the temperature
   double longest = 0.0;              // [s], of the recordings
   double shortest_step = HUGE_VAL;   // [s], of their samples
-  std::set<std::string> devices;     // simulated ones, told by their texts
+  std::set<std::string> devices;     // simulated ones, by stated_device()
+  bool states_devices = true;        // every run
   bool may_remember = false;         // a device
   std::optional<double> age;         // [h], of the oldest unit, by stated_age()
 };

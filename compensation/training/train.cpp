@@ -18,6 +18,7 @@
 #include "compensation/training/selection.h"
 #include "compensation/training/sigma_fit.h"
 #include "config/option_message.h"
+#include "dataset/files/sha256.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -293,6 +294,8 @@ TrainResult train(const ModelSpec& spec, const RunSource& runs,
   p.held_out = files_of(unseen_facts);
   p.training_set = runs.set;
   p.held_out_set = held_out.set;
+  if (!runs.set && facts.states_devices && facts.devices.size() == 1)
+    p.device_sha256 = sha256(*facts.devices.begin());
   p.model_text = spec.text;
   p.seed = seed;
   p.stop_reason = sentence(result.summary().stop_reason);

@@ -16,6 +16,7 @@
 #include "config/file_error.h"
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/file_checksum.h"
+#include "dataset/files/file_ending.h"
 #include "dataset/netcdf/hdf5_driver.h"
 #include "dataset/netcdf/hdf5_id.h"
 #include "dataset/netcdf/hdf5_write.h"
@@ -269,7 +270,7 @@ RecordingFile::RecordingFile(const Recording& head, std::size_t samples,
   if (!defect.empty()) refuse(defect);
   for (const Column& column : head.columns)
     columns_.push_back(described(column));
-  if (path.extension() == ".csv") {
+  if (file_ending(path) == ".csv") {
     body_ = std::make_unique<CsvBody>(head, path);
   } else {
     body_ = std::make_unique<Hdf5Body>(head, samples, path);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "dataset/recording/stated_values.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <map>
@@ -101,6 +103,34 @@ std::optional<double> number_of(const std::string& text,
 
 bool states_device_table(const Recording& recording, std::string_view name) {
   return has_table(recording.device_text, recording.overrides_text, name);
+}
+
+std::string stated_device(const Recording& recording) {
+  constexpr std::string_view kTables[] = {"beam",
+                                          "patches",
+                                          "bond",
+                                          "mount",
+                                          "air",
+                                          "drive",
+                                          "readout",
+                                          "thermal",
+                                          "noise",
+                                          "memory",
+                                          "temperature_sensor",
+                                          "loop_channels",
+                                          "spurious_mode"};
+  std::string text;
+  for (const std::string_view table : kTables)
+    text +=
+        with_value(recording.device_text, recording.overrides_text, table,
+                   [&](ConfigNode node) -> std::optional<std::string> {
+                     std::erase_if(node.children, [&](const auto& child) {
+                       return table == "noise" && child.key == "enabled";
+                     });
+                     return fmt::format("{} = {}\n", table, toml_text(node));
+                   })
+            .value_or("");
+  return text.empty() ? recording.device_text : text;
 }
 
 bool states_scenario_table(const Recording& recording, std::string_view name) {

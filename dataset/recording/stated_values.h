@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "dataset/recording/recording.h"
@@ -29,5 +30,10 @@ std::optional<double> stated_scenario_number(const Recording& recording,
 /// recording, or nothing where there is none.
 std::optional<bool> stated_scenario_flag(const Recording& recording,
                                          std::string_view key);
+
+/// Returns the values of the device file of a recording, with those that its
+/// overrides replaced: the same for files that differ in comments and blanks.
+/// Whether noise is enabled does not count. Empty of a log.
+std::string stated_device(const Recording& recording);
 
 }  // namespace beamgyro::internal

@@ -13,8 +13,9 @@
 
 #include "beamgyro/progress.h"
 #include "beamgyro/recording.h"
+#include "beamgyro/visibility.h"
 
-namespace beamgyro {
+namespace BEAMGYRO_PUBLIC beamgyro {
 
 struct AllanOptions {
   /// Of adev, oadev, mdev, hdev, ohdev, totdev (docs/guide/allan_deviation.md).

@@ -13,8 +13,9 @@
 #include "beamgyro/device.h"
 #include "beamgyro/progress.h"
 #include "beamgyro/shared.h"
+#include "beamgyro/visibility.h"
 
-namespace beamgyro {
+namespace BEAMGYRO_PUBLIC beamgyro {
 namespace internal {
 struct CampaignPlan;
 }

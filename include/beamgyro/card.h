@@ -8,8 +8,9 @@
 
 #include "beamgyro/progress.h"
 #include "beamgyro/set.h"
+#include "beamgyro/visibility.h"
 
-namespace beamgyro {
+namespace BEAMGYRO_PUBLIC beamgyro {
 
 /// What no set knows of itself. Croissant 1.0 requires all but the version.
 struct SetCardOptions {

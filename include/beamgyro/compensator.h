@@ -12,8 +12,9 @@
 
 #include "beamgyro/recording.h"
 #include "beamgyro/shared.h"
+#include "beamgyro/visibility.h"
 
-namespace beamgyro {
+namespace BEAMGYRO_PUBLIC beamgyro {
 namespace internal {
 struct CompensatorState;
 }

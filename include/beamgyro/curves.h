@@ -15,8 +15,9 @@
 #include "beamgyro/campaign.h"
 #include "beamgyro/device.h"
 #include "beamgyro/progress.h"
+#include "beamgyro/visibility.h"
 
-namespace beamgyro {
+namespace BEAMGYRO_PUBLIC beamgyro {
 
 /// The steady states of the devices of a campaign at rest over the temperature
 /// of their beams, without noise.

@@ -6,11 +6,14 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "beamgyro/shared.h"
+#include "beamgyro/value.h"
+#include "beamgyro/visibility.h"
 
-namespace beamgyro {
+namespace BEAMGYRO_PUBLIC beamgyro {
 namespace internal {
 struct DeviceState;
 }
@@ -40,6 +43,9 @@ class Device : public Shared<internal::DeviceState> {
   /// Returns the device with further keys replaced. A key that was replaced
   /// before takes the new value. Throws as read().
   Device with(const std::vector<std::string>& overrides) const;
+  /// The same for one key and a typed value, as "beam.length_m" and 0.041;
+  /// override_of() makes overrides of several.
+  Device with(std::string_view key, const Value& value) const;
 
   std::string text() const;                    ///< byte for byte as read
   std::string name() const;                    ///< of the file, in messages

@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "beamgyro/device.h"
+#include "beamgyro/visibility.h"
 
-namespace beamgyro {
+namespace BEAMGYRO_PUBLIC beamgyro {
 
 /// Figures of a data sheet, each optional (docs/guide/smaller_gyro.md). The
 /// unit is the end of the name.

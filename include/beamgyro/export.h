@@ -13,8 +13,9 @@
 
 #include "beamgyro/compensator.h"
 #include "beamgyro/device.h"
+#include "beamgyro/visibility.h"
 
-namespace beamgyro {
+namespace BEAMGYRO_PUBLIC beamgyro {
 
 struct ExportOptions {
   std::string name = {};  ///< of files and functions; else of the compensator

@@ -7,8 +7,9 @@
 #include <string>
 
 #include "beamgyro/recording.h"
+#include "beamgyro/visibility.h"
 
-namespace beamgyro {
+namespace BEAMGYRO_PUBLIC beamgyro {
 
 struct ImportOptions {
   std::string axis = {};  ///< "x", "y" or "z" where the map has several

@@ -9,7 +9,9 @@
 #include <string_view>
 #include <utility>
 
-namespace beamgyro {
+#include "beamgyro/visibility.h"
+
+namespace BEAMGYRO_PUBLIC beamgyro {
 
 /// Returns how an option is written, with a value if that is not empty:
 /// "soaks = 3" in C++, "--soaks 3" on the command line, "soaks=3" in Python.

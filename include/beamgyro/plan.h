@@ -11,8 +11,9 @@
 
 #include "beamgyro/compensator.h"
 #include "beamgyro/device.h"
+#include "beamgyro/visibility.h"
 
-namespace beamgyro {
+namespace BEAMGYRO_PUBLIC beamgyro {
 
 /// Temperatures of the chamber, lowest and highest [degC].
 using ChamberRange = std::pair<double, double>;

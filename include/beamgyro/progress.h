@@ -7,7 +7,9 @@
 #include <functional>
 #include <stdexcept>
 
-namespace beamgyro {
+#include "beamgyro/visibility.h"
+
+namespace BEAMGYRO_PUBLIC beamgyro {
 
 /// Takes the share of the work that is done, 0 .. 1, and returns whether to go
 /// on. It is called from any thread, but never by two at once. An empty

@@ -9,7 +9,9 @@
 #include <string_view>
 #include <vector>
 
-namespace beamgyro {
+#include "beamgyro/visibility.h"
+
+namespace BEAMGYRO_PUBLIC beamgyro {
 
 /// Role of a variable: `kMeasured` is measured by the gyro and may be an input
 /// of a compensator, `kTruth` is known to a simulator only, `kCompensated` is

@@ -7,12 +7,15 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "beamgyro/device.h"
 #include "beamgyro/shared.h"
+#include "beamgyro/value.h"
+#include "beamgyro/visibility.h"
 
-namespace beamgyro {
+namespace BEAMGYRO_PUBLIC beamgyro {
 namespace internal {
 struct ScenarioState;
 }
@@ -48,6 +51,9 @@ class Scenario : public Shared<internal::ScenarioState> {
   /// key that was replaced before takes the new value. Profiles that were read
   /// before are not read again. Throws as read().
   Scenario with(const std::vector<std::string>& overrides) const;
+  /// The same for one key and a typed value, as "beam.length_m" and 0.041;
+  /// override_of() makes overrides of several.
+  Scenario with(std::string_view key, const Value& value) const;
 
   /// Returns the scenario with another device, whose overrides go along; those
   /// of the scenario that are about a device are kept, and win.

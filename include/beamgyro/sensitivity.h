@@ -13,8 +13,9 @@
 #include "beamgyro/campaign.h"
 #include "beamgyro/compensator.h"
 #include "beamgyro/progress.h"
+#include "beamgyro/visibility.h"
 
-namespace beamgyro {
+namespace BEAMGYRO_PUBLIC beamgyro {
 
 struct SensitivityOptions {
   /// Figures of merit: bias_pp_deg_per_s, cubic_rms_deg_per_s,

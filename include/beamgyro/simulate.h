@@ -11,8 +11,9 @@
 #include "beamgyro/progress.h"
 #include "beamgyro/recording.h"
 #include "beamgyro/scenario.h"
+#include "beamgyro/visibility.h"
 
-namespace beamgyro {
+namespace BEAMGYRO_PUBLIC beamgyro {
 
 struct SimulationOptions {
   /// Fails where the drive loop is not locked one second after a power-on or

@@ -15,8 +15,9 @@
 #include "beamgyro/recording.h"
 #include "beamgyro/set.h"
 #include "beamgyro/shared.h"
+#include "beamgyro/visibility.h"
 
-namespace beamgyro {
+namespace BEAMGYRO_PUBLIC beamgyro {
 namespace internal {
 struct ModelSpec;
 }

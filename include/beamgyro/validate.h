@@ -16,8 +16,9 @@
 #include "beamgyro/set.h"
 #include "beamgyro/train.h"
 #include "beamgyro/verdict.h"
+#include "beamgyro/visibility.h"
 
-namespace beamgyro {
+namespace BEAMGYRO_PUBLIC beamgyro {
 
 constexpr std::uint64_t kLargestSeed = (std::uint64_t{1} << 53) - 1;
 
@@ -45,14 +46,17 @@ struct OwnMetric {
   std::function<double(const std::vector<OwnMetricRun>&)> value;
 };
 
-/// What a compensator is judged on and by: `device`, `recordings` or `set`.
+/// What a compensator is judged on and by: `device`, recordings or `set`.
 /// The command and Python take the same members under the names of
 /// docs/reference/commands.md and docs/guide/python.md.
 struct ValidationOptions {
   std::optional<Device> device = {};
   /// The runs that it goes through; that of a device only.
   std::optional<std::filesystem::path> qualification = {};
-  std::vector<std::filesystem::path> recordings = {};
+  std::vector<std::filesystem::path> recordings = {};  ///< files
+  /// Recordings that are judged after those files. In the result the checksums
+  /// of what was measured stand in place of those of files.
+  std::vector<NamedRecording> recordings_in_memory = {};
   std::optional<Set> set = {};
   std::vector<std::string> runs = {};  ///< of the set; none: all
   /// Numbers of the set; none: the test devices.
@@ -151,7 +155,8 @@ struct ValidationOutcome {
 /// Judges a compensator by every metric, check and limit. The result does not
 /// depend on the number of threads. A class of the user's own is called by
 /// several threads at once. Throws std::invalid_argument for what is wrong in a
-/// file or missing among the options, for a recording that is there twice, and
+/// file or missing among the options, for a recording that is there twice, for
+/// one in memory that write_recording() would refuse, and
 /// as open_compensator() for the isolation, std::runtime_error when a
 /// simulation or a process cannot go on, Cancelled, and what a class of the
 /// user's own throws.

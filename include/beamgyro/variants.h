@@ -11,8 +11,9 @@
 #include "beamgyro/progress.h"
 #include "beamgyro/recording.h"
 #include "beamgyro/scenario.h"
+#include "beamgyro/visibility.h"
 
-namespace beamgyro {
+namespace BEAMGYRO_PUBLIC beamgyro {
 
 /// One thing that is varied: the overrides KEY=VALUE of each of its values.
 using VariedValues = std::vector<std::vector<std::string>>;

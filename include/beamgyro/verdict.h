@@ -5,7 +5,9 @@
 
 #include <string_view>
 
-namespace beamgyro {
+#include "beamgyro/visibility.h"
+
+namespace BEAMGYRO_PUBLIC beamgyro {
 
 /// What a measured value says about a limit, after ASME B89.7.3.1: stringent
 /// acceptance and stringent rejection, with a guard band on both sides of the

@@ -3,11 +3,13 @@
 /// The version of the library: of the headers, and of what is linked.
 #pragma once
 
+#include "beamgyro/visibility.h"
+
 #define BEAMGYRO_VERSION_MAJOR 0
 #define BEAMGYRO_VERSION_MINOR 1
 #define BEAMGYRO_VERSION_PATCH 0
 
-namespace beamgyro {
+namespace BEAMGYRO_PUBLIC beamgyro {
 
 /// Returns the version of the linked library, "MAJOR.MINOR.PATCH". It is what
 /// files contain as program_version.

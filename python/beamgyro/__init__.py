@@ -22,10 +22,12 @@ from typing import TYPE_CHECKING
 from beamgyro._analysis import allan, plan, sensitivity
 from beamgyro._campaign import Campaign
 from beamgyro._compensation import Compensator, compensate
+from beamgyro._core import Cancelled
 from beamgyro._core import version as __version__
 from beamgyro._curves import (HalfSplit, area_metric, characterise,
                               curve_figures, half_split)
 from beamgyro._dataset import open_recording, save_recording
+from beamgyro._design import DesignedDevice, DesignFigure, design_device
 from beamgyro._device import Device
 from beamgyro._estimator import Estimator, LegSplit, RunSplit
 from beamgyro._export import export
@@ -43,14 +45,16 @@ from beamgyro._warnings import BeamgyroWarning
 from beamgyro._windows import Windows
 
 __all__ = [
-    "AllanResult", "BeamgyroWarning", "Campaign", "Compensator",
-    "CurveFiguresResult", "Device", "Estimator", "Gyro", "HalfSplit",
-    "LegSplit", "PlanResult", "RunSplit", "Sample", "Scenario",
-    "SensitivityResult", "Set", "Truth", "ValidationResult", "Windows", "__version__", "allan", "area_metric",
-    "characterise", "compensate", "curve_figures", "export", "features",
-    "generate", "half_split", "import_log", "open_recording", "open_set",
-    "plan", "run", "run_many", "run_to_file", "save_recording", "sensitivity",
-    "step_all", "train", "training_rows", "validate",
+    "AllanResult", "BeamgyroWarning", "Campaign", "Cancelled",
+    "Compensator", "CurveFiguresResult", "DesignFigure", "DesignedDevice",
+    "Device", "Estimator", "Gyro", "HalfSplit", "LegSplit", "PlanResult",
+    "RunSplit", "Sample", "Scenario", "SensitivityResult", "Set", "Truth",
+    "ValidationResult", "Windows", "__version__", "allan", "area_metric",
+    "characterise", "compensate", "curve_figures", "design_device",
+    "export", "features", "generate", "half_split", "import_log",
+    "open_recording", "open_set", "plan", "run", "run_many", "run_to_file",
+    "save_recording", "sensitivity", "step_all", "train", "training_rows",
+    "validate",
 ]
 
 

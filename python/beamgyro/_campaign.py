@@ -74,6 +74,11 @@ class Campaign(Wrapper):
         return (f"<beamgyro.Campaign {self.name}: {self.devices} devices, "
                 f"runs {', '.join(self.runs)}>")
 
+    def _rows(self) -> list[tuple[str, str]]:
+        return [("name", self.name), ("devices", str(self.devices)),
+                ("runs of each", ", ".join(self.runs)),
+                ("seed", str(self.seed))]
+
     def __reduce__(self) -> tuple[Any, ...]:
         return Campaign._parsed, (self._native.files, self.devices)
 

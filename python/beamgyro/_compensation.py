@@ -148,6 +148,17 @@ class Compensator(Wrapper):
                   if isinstance(self._native, _core.Compensator) else "")
         return f"<beamgyro.Compensator {self.name}{method}>"
 
+    def _rows(self) -> list[tuple[str, str]]:
+        rows = [("name", self.name),
+                ("inputs", ", ".join(self.inputs) or "all that are measured")]
+        if not isinstance(self._native, _core.Compensator):
+            return rows
+        low, high = self.temperature_range
+        return rows + [
+            ("method", self.method),
+            ("temperatures of its training", f"{low:.4g} to {high:.4g} degC"),
+            ("warnings", "; ".join(self._native.warnings) or "none")]
+
     def __reduce__(self) -> tuple[Any, ...]:
         if isinstance(self._native, _core.Compensator):
             return Compensator.parse, (self._native.text, self.name)

@@ -45,6 +45,8 @@ class Recording:
 def new_recording(time: npt.ArrayLike, status: npt.ArrayLike) -> Recording: ...
 def read_recording(path: _Path) -> tuple[Recording, list[str]]: ...
 
+class Cancelled(RuntimeError): ...
+
 class Device:
     @staticmethod
     def read(file: _Path, overrides: list[str]) -> Device: ...
@@ -222,6 +224,7 @@ class Compensator(RateCompensator):
     method: Final[str]
     lowest_temperature: Final[float]
     highest_temperature: Final[float]
+    warnings: Final[list[str]]
     curve: Final[str]
 
 _Answer = tuple[npt.ArrayLike, Optional[npt.ArrayLike]]
@@ -293,3 +296,10 @@ def write_texts(directory: _Path,
 def export_files(compensators: Sequence[Compensator], format: str,
                  options: dict[str, Any]) -> tuple[list[tuple[str, str]],
                                                    list[str]]: ...
+def export_for_simulator(devices: Sequence[Device],
+                         compensators: Sequence[Compensator], format: str,
+                         options: dict[str, Any]
+                         ) -> tuple[list[tuple[str, str]], list[str]]: ...
+def design_device(base: Device, sheet: dict[str, Any]
+                  ) -> tuple[str, list[tuple[str, str, float, float, bool]],
+                             list[str]]: ...

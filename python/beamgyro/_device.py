@@ -111,6 +111,21 @@ class Device(Wrapper):
         changes = "".join(f", {text}" for text in self.overrides)
         return f"<beamgyro.Device {self.name}{changes}>"
 
+    def _rows(self) -> list[tuple[str, str]]:
+        rows = [("name", self.name),
+                ("replaced keys", ", ".join(self.overrides) or "none")]
+        try:
+            found = _core.characterise(self._native, [25.0])["columns"]
+        except RuntimeError as error:  # the drive loop does not lock
+            return [*rows, ("at 25 degC", str(error))]
+        return rows + [(f"{words} at 25 degC",
+                        f"{found[name][0][0]:.6g} {unit}".strip())
+                       for name, words, unit in (
+                           ("drive_frequency", "drive frequency", "Hz"),
+                           ("split", "sense less drive mode", "Hz"),
+                           ("q_drive", "quality factor", ""),
+                           ("bias", "bias", "deg/s"))]
+
     def __reduce__(self) -> tuple[Any, ...]:
         return Device._parsed, (self.text, self.name, self.overrides)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Generic, Optional, Self, TypeVar
 
-from beamgyro import _core
+from beamgyro import _core, _html
 
 Value = TypeVar("Value")
 
@@ -46,6 +46,13 @@ class Wrapper:
     def _parsed(cls, *parts: Any) -> Self:
         """Return the object whose compiled part is made of these."""
         return cls._of(getattr(_core, cls.__name__).parse(*parts))
+
+    def _rows(self) -> list[tuple[str, str]]:
+        """Return what a notebook shows of the object, by name."""
+        raise NotImplementedError
+
+    def _repr_html_(self) -> str:
+        return _html.table((type(self).__name__.lower(), ""), self._rows())
 
     def _identity(self) -> Any:
         """Return what equal objects share."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import html
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Optional
 
 from beamgyro._scenario import Scenario
 
-from beamgyro import _lazy
+from beamgyro import _html, _lazy
 
 if TYPE_CHECKING:
     import pandas as pd  # type: ignore[import]
@@ -54,16 +54,6 @@ class Report:
 
     def _repr_html_(self) -> str:
         return f"<pre>{html.escape(self._text)}</pre>"
-
-
-def table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return an HTML table."""
-    def line(cells: Sequence[str], tag: str) -> str:
-        return "<tr>" + "".join(f"<{tag}>{html.escape(cell)}</{tag}>"
-                                for cell in cells) + "</tr>"
-    body = "".join(line(row, "td") for row in rows)
-    return (f"<table><thead>{line(header, 'th')}</thead>"
-            f"<tbody>{body}</tbody></table>")
 
 
 class AllanResult(Report):
@@ -172,5 +162,5 @@ class SensitivityResult(Report):
             rows = [(one["key"], f"{one['first']:.3f}",
                      f"{one['total']:.3f}") for one in indices]
             parts.append(f"<p><b>{html.escape(name)}</b></p>"
-                         + table(("key", "first", "total"), rows))
+                         + _html.table(("key", "first", "total"), rows))
         return "".join(parts)

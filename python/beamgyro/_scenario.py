@@ -113,6 +113,14 @@ class Scenario(Wrapper):
                 f"{self.fidelity}, seed {self.seed}; device "
                 f"{self.device.name}{changes})>")
 
+    def _rows(self) -> list[tuple[str, str]]:
+        return [("name", self.name), ("title", self.title),
+                ("device", self.device.name),
+                ("replaced keys", ", ".join(self.overrides) or "none"),
+                ("duration", f"{self.duration_s:g} s, {self.samples} samples "
+                 f"at {self.output_rate_Hz:g} Hz"),
+                ("fidelity", self.fidelity), ("seed", str(self.seed))]
+
     def __reduce__(self) -> tuple[Any, ...]:
         return _scenario_of, (self.text, self.device, self.overrides,
                               self.name, self._native.profiles)

@@ -16,7 +16,6 @@ from beamgyro._campaign import Campaign, CampaignLike
 from beamgyro._dataset import Path, dataset_of
 from beamgyro._native import Native, Wrapper
 from beamgyro._progress import ProgressArgument, watched
-from beamgyro._results import table as html_table
 from beamgyro._warnings import warn
 
 if TYPE_CHECKING:
@@ -264,17 +263,16 @@ class Set(Wrapper, Mapping[tuple[str, int], "xr.Dataset"]):
         return (f"<beamgyro.Set {self.directory}: {self.devices} devices, "
                 f"runs {', '.join(self.runs)}>")
 
-    def _repr_html_(self) -> str:
+    def _rows(self) -> list[tuple[str, str]]:
         parts = {part: len(self.devices_of(part))
                  for part in ("train", "validation", "test")}
-        rows = [("directory", str(self.directory)),
+        return [("directory", str(self.directory)),
                 ("runs", ", ".join(self.runs)),
                 ("devices", f"{self.devices}: " + ", ".join(
                     f"{count} {part}" for part, count in parts.items())),
                 ("without values", f"{len(self.failures)} of "
                  f"{self.devices * len(self.runs)} runs"),
                 ("seed", str(self.seed))]
-        return html_table(("set", ""), rows)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Set, (str(self.directory),)

@@ -19,6 +19,8 @@
 #include "include/beamgyro/allan.h"
 #include "include/beamgyro/campaign.h"
 #include "include/beamgyro/curves.h"
+#include "include/beamgyro/device.h"
+#include "include/beamgyro/device_design.h"
 #include "include/beamgyro/export.h"
 #include "include/beamgyro/option_error.h"
 #include "include/beamgyro/plan.h"
@@ -257,6 +259,14 @@ py::tuple split_in_halves(const std::vector<double>& sample, std::size_t draws,
   return py::make_tuple(found.median, found.p95);
 }
 
+/// Returns (names and texts of the files, warnings).
+py::tuple files_and_warnings(const ExportResult& found) {
+  py::list files;
+  for (const ExportedFile& file : found.files)
+    files.append(py::make_tuple(file.name, file.text));
+  return py::make_tuple(files, found.warnings);
+}
+
 py::tuple export_compensators(const std::vector<Compensator>& compensators,
                               const std::string& format,
                               const py::dict& given) {
@@ -275,10 +285,64 @@ py::tuple export_compensators(const std::vector<Compensator>& compensators,
       long_call(py::none(), [compensators, format, options](const Progress&) {
         return export_files(compensators, format, options);
       });
-  py::list files;
-  for (const ExportedFile& file : found.files)
-    files.append(py::make_tuple(file.name, file.text));
-  return py::make_tuple(files, found.warnings);
+  return files_and_warnings(found);
+}
+
+py::tuple export_to_simulator(const std::vector<Device>& devices,
+                              const std::vector<Compensator>& compensators,
+                              const std::string& format,
+                              const py::dict& given) {
+  SimulatorExportOptions options;
+  take(given, "name", options.name);
+  take(given, "axes", options.axes);
+  take(given, "fit_cubic", options.fit_cubic);
+  take(given, "instance", options.instance);
+  take(given, "range_degC", options.range_degC);
+  take(given, "temperature_degC", options.temperature_degC);
+  take(given, "update_rate_Hz", options.update_rate_Hz);
+  return files_and_warnings(long_call(py::none(), [=](const Progress&) {
+    return export_for_simulator(devices, compensators, format, options);
+  }));
+}
+
+/// Returns (text, figures as tuples, warnings).
+py::tuple design_of(const Device& base, const py::dict& given) {
+  DataSheet sheet;
+  take(given, "length", sheet.length);
+  take(given, "side", sheet.side);
+  take(given, "frequency_Hz", sheet.frequency_Hz);
+  take(given, "split_Hz", sheet.split_Hz);
+  take(given, "quality", sheet.quality);
+  take(given, "air_quality", sheet.air_quality);
+  take(given, "mount", sheet.mount);
+  take(given, "range_deg_per_s", sheet.range_deg_per_s);
+  take(given, "full_scale_deg_per_s", sheet.full_scale_deg_per_s);
+  take(given, "scale_factor_V_per_deg_per_s",
+       sheet.scale_factor_V_per_deg_per_s);
+  take(given, "bandwidth_Hz", sheet.bandwidth_Hz);
+  take(given, "noise_deg_per_s_per_sqrt_Hz", sheet.noise_deg_per_s_per_sqrt_Hz);
+  take(given, "walk_deg_per_sqrt_h", sheet.walk_deg_per_sqrt_h);
+  take(given, "instability_deg_per_h", sheet.instability_deg_per_h);
+  take(given, "null_deg_per_s", sheet.null_deg_per_s);
+  take(given, "scale_tolerance_percent", sheet.scale_tolerance_percent);
+  take(given, "adc_bits", sheet.adc_bits);
+  take(given, "bits", sheet.bits);
+  take(given, "sensor_range_degC", sheet.sensor_range_degC);
+  take(given, "resolution_K", sheet.resolution_K);
+  take(given, "sensor_tolerance_K", sheet.sensor_tolerance_K);
+  take(given, "supply_V", sheet.supply_V);
+  take(given, "current_A", sheet.current_A);
+  take(given, "power_W", sheet.power_W);
+  take(given, "self_heating_K", sheet.self_heating_K);
+  take(given, "warm_up_s", sheet.warm_up_s);
+  take(given, "temperature_degC", sheet.temperature_degC);
+  const DesignedDevice made = long_call(
+      py::none(), [=](const Progress&) { return design_device(base, sheet); });
+  py::list figures;
+  for (const DesignFigure& one : made.figures)
+    figures.append(py::make_tuple(one.name, one.unit, one.asked, one.measured,
+                                  one.is_met()));
+  return py::make_tuple(made.text, figures, made.warnings);
 }
 
 }  // namespace
@@ -315,6 +379,8 @@ void bind_analysis(py::module_& core) {
              write_exported(directory, files);
            });
   core.def("export_files", &export_compensators);
+  core.def("export_for_simulator", &export_to_simulator);
+  core.def("design_device", &design_of);
 }
 
 }  // namespace beamgyro::python

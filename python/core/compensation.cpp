@@ -225,6 +225,7 @@ void bind_compensators(py::module_& core) {
                              &Compensator::lowest_temperature)
       .def_property_readonly("highest_temperature",
                              &Compensator::highest_temperature)
+      .def_property_readonly("warnings", &Compensator::warnings)
       .def_property_readonly("curve", &Compensator::curve);
 }
 

@@ -108,29 +108,31 @@ struct SharedProgress {
 };
 
 /// Tells the Python function `on_progress`, unless it is None, the share of the
-/// work, and runs the handlers of signals that have come (Ctrl-C). Throws
+/// work, and runs the handlers of signals that have come (Ctrl-C). Returns
+/// whether to go on: not where the function returned False. Throws
 /// py::error_already_set for an exception of either.
-inline void look_at_python(const py::object& on_progress, double share) {
+inline bool look_at_python(const py::object& on_progress, double share) {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-  if (!on_progress.is_none()) on_progress(share);
+  return on_progress.is_none() || on_progress(share).ptr() != Py_False;
 }
 
 /// Calls `on_progress` with 0 when work begins, with numbers that do not fall,
-/// and with 1 when it is done.
+/// and with 1 when it is done. Throws Cancelled where it returns False before.
 class ReportedProgress {
  public:
   explicit ReportedProgress(const py::object& on_progress)
       : on_progress_(on_progress) {
-    look_at_python(on_progress_, reported_);
+    if (!look_at_python(on_progress_, reported_)) throw Cancelled();
   }
 
   void report(double share) {
     if (share > reported_) reported_ = std::min(share, 1.0);
-    look_at_python(on_progress_, reported_);
+    if (!look_at_python(on_progress_, reported_)) throw Cancelled();
   }
 
+  /// Nothing is left to be stopped.
   void report_end() {
-    if (reported_ < 1.0) report(1.0);
+    if (reported_ < 1.0) look_at_python(on_progress_, 1.0);
   }
 
  private:
@@ -139,7 +141,7 @@ class ReportedProgress {
 };
 
 /// Returns work(progress), which runs in a thread of its own without the GIL;
-/// the thread of the caller looks at Python meanwhile. What look_at_python()
+/// the thread of the caller looks at Python meanwhile. What ReportedProgress
 /// throws stops the work and reaches the caller at once; work that looks at its
 /// progress too seldom ends later, in the background. `work` therefore must own
 /// everything that it uses, and hold no Python object but by gil_owned().
@@ -175,7 +177,7 @@ auto long_call(const py::object& on_progress, Work work) {
       const py::gil_scoped_acquire acquired;
       try {
         reported.report(state->share);
-      } catch (const py::error_already_set&) {
+      } catch (...) {  // of Python, or Cancelled
         raised = std::current_exception();
         state->is_stopped = true;
       }

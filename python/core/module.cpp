@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "include/beamgyro/option_error.h"
+#include "include/beamgyro/progress.h"
 #include "include/beamgyro/version.h"
 #include "python/core/bindings.h"
 #include "python/core/long_call.h"
@@ -72,6 +73,11 @@ PYBIND11_MODULE(_core, core) {
   python::bind_analysis(core);
   python::bind_gyro(core);
   python::refuse_new_objects(core);
+  const auto cancelled =
+      pybind11::register_local_exception<beamgyro::Cancelled>(
+          core, "Cancelled", PyExc_RuntimeError);
+  cancelled.attr("__module__") = "beamgyro";
+  cancelled.attr("__doc__") = "A function of the progress returned False.";
   core.def("end_running_work", &python::end_running_work);
   pybind11::module_::import("atexit").attr("register")(
       core.attr("end_running_work"));

@@ -223,7 +223,8 @@ void bind_simulation(py::module_& core) {
   py::class_<Device>(core, "Device")
       .def_static("read", &Device::read)
       .def_static("parse", &Device::parse)
-      .def("with_", &Device::with)
+      .def("with_", py::overload_cast<const std::vector<std::string>&>(
+                        &Device::with, py::const_))
       .def_property_readonly("text", &Device::text)
       .def_property_readonly("name", &Device::name)
       .def_property_readonly("overrides", &Device::overrides);
@@ -238,7 +239,8 @@ void bind_simulation(py::module_& core) {
           py::overload_cast<const std::filesystem::path&, const Device&,
                             const std::vector<std::string>&>(&Scenario::read))
       .def_static("parse", &parse)
-      .def("with_", &Scenario::with)
+      .def("with_", py::overload_cast<const std::vector<std::string>&>(
+                        &Scenario::with, py::const_))
       .def("with_device", &Scenario::with_device)
       .def_property_readonly("text", &Scenario::text)
       .def_property_readonly("name", &Scenario::name)

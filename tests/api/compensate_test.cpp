@@ -163,5 +163,55 @@ TEST(PublicValidation, JudgesAUserCompensatorOnRecordings) {
   EXPECT_THROW(validate(*nothing, {}), std::invalid_argument);
 }
 
+TEST(PublicValidation, ARecordingInMemoryIsJudgedAsItsFile) {
+  const TestDirectory folder;
+  const auto file = folder.directory / "run.h5";
+  write_recording(run_of(), file);
+  const Recording read = read_recording(file);
+  const auto model = beamgyro::Model::read(kScenarios / "models/constant.toml");
+  const Compensator constant =
+      beamgyro::train(
+          model, std::vector<NamedRecording>{{"other.h5", run_of({"seed=9"})}})
+          .compensator;
+  const ValidationOutcome of_file = validate(constant, {.recordings = {file}});
+  const ValidationOutcome in_memory =
+      validate(constant, {.recordings_in_memory = {{"run.h5", read}}});
+  EXPECT_EQ(in_memory.text, of_file.text);
+  EXPECT_EQ(in_memory.page.size(), of_file.page.size());  // but for its hash
+  EXPECT_TRUE(holds(in_memory.json, "\"run.h5\""));
+  const auto twice = [&] {
+    validate(constant, {.recordings = {file},
+                        .recordings_in_memory = {{"copy.h5", read}}});
+  };
+  EXPECT_TRUE(holds(rejection(twice), "copy.h5"));
+  Recording damaged = read;
+  damaged.time.back() = damaged.time.front();
+  const auto of_damaged = [&] {
+    validate(constant, {.recordings_in_memory = {{"bad", damaged}}});
+  };
+  EXPECT_TRUE(holds(rejection(of_damaged), "bad"));
+  const auto both = [&] {
+    validate(
+        constant,
+        {.device = beamgyro::Device::read(kScenarios / "devices/nominal.toml"),
+         .recordings_in_memory = {{"run", read}}});
+  };
+  EXPECT_TRUE(holds(rejection(both), "expected one of them"));
+}
+
+TEST(PublicValidation, ARunOfTrainingIsKnownInMemory) {
+  const Recording run = run_of();
+  const auto model = beamgyro::Model::read(kScenarios / "models/constant.toml");
+  const Compensator constant =
+      beamgyro::train(model, std::vector<NamedRecording>{{"run", run}})
+          .compensator;
+  const ValidationOutcome outcome =
+      validate(constant, {.recordings_in_memory = {{"again", run}}});
+  const auto found =
+      std::ranges::find(outcome.checks, "hold_out", &CheckRow::name);
+  ASSERT_NE(found, outcome.checks.end());
+  EXPECT_EQ(found->outcome, "failed");
+}
+
 }  // namespace
 }  // namespace beamgyro::internal::compensate_api_test

@@ -64,6 +64,8 @@ add_executable(loop loop.cpp)
 target_link_libraries(loop PRIVATE beamgyro::sim)
 add_executable(user {every_call})
 target_link_libraries(user PRIVATE beamgyro::beamgyro)
+add_executable(user_of_shared {every_call})
+target_link_libraries(user_of_shared PRIVATE beamgyro::shared)
 foreach(part dataset compensation validation)
   add_executable(${{part}} version.cpp)
   target_link_libraries(${{part}} PRIVATE beamgyro::${{part}})
@@ -206,13 +208,14 @@ class Library(Call):
 
     def test_find_package_takes_its_parts_as_components(self):
         self.assertIn("found: 1;", self.found(
-            "REQUIRED COMPONENTS dataset sim compensation validation"))
+            "REQUIRED COMPONENTS dataset sim compensation validation shared"))
         self.assertIn("found: 1;", self.found("OPTIONAL_COMPONENTS plot"))
         for unknown in ["plot", "internal_sim"]:
             said = self.found(f"COMPONENTS sim {unknown}")
             self.assertRegex(said, "found: (0|FALSE);")
             self.assertIn(f"beamgyro has no component {unknown}; it has "
-                          "compensation, dataset, sim and validation.", said)
+                          "compensation, dataset, shared, sim and "
+                          "validation.", said)
 
     def test_each_part_links_alone(self):
         for part in ["dataset", "compensation", "validation"]:
@@ -294,24 +297,64 @@ class Library(Call):
                     foreign.add(f"{library.name}: {kind[2]}")
         self.assertEqual(foreign, set())
 
+    def shared_library(self):
+        return next(self.prefix.rglob("libbeamgyro.so"))
+
+    def test_the_shared_library_shows_the_public_names_only(self):
+        listed = self.call("nm", "-DC", "--defined-only",
+                           self.shared_library()).stdout.splitlines()
+        names = [line.split(maxsplit=2)[2] for line in listed]
+        for name in names:
+            self.assertRegex(name, r"^(?:(?:vtable|typeinfo|VTT)(?: name)? for )?"
+                             "beamgyro::(?!internal)")
+        for name in ["beamgyro::Device::read(", "beamgyro::version()",
+                     "beamgyro::write_recording(", "beamgyro::validate(",
+                     "typeinfo for beamgyro::OptionError",
+                     "vtable for beamgyro::RateCompensator"]:
+            self.assertTrue(any(shown.startswith(name) for shown in names),
+                            name)
+
+    def test_the_shared_library_has_a_version_and_needs_no_other_package(self):
+        headers = self.call("readelf", "-d", self.shared_library()).stdout
+        self.assertIn("Library soname: [libbeamgyro.so.0.1]", headers)
+        self.assertNotRegex(headers, "R(?:UN)?PATH")
+        folder = self.dir / "shared"
+        folder.mkdir()
+        (folder / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.25)\n"
+            "project(user LANGUAGES CXX)\n"
+            "find_package(beamgyro 0.1 REQUIRED COMPONENTS shared)\n"
+            "add_executable(user ../user.cpp)\n"
+            "target_link_libraries(user PRIVATE beamgyro::shared)\n")
+        said = self.call("cmake", "-G", "Ninja", "-B", "build",
+                         f"-DCMAKE_PREFIX_PATH={self.prefix}", cwd=folder)
+        self.assertNotIn("HDF5", said.stdout)
+        self.call("cmake", "--build", "build", cwd=folder)
+        said = self.call("build/user", SCENARIOS / "ten_minutes.toml",
+                         cwd=folder)
+        self.assertEqual(said.stdout, "3000 samples\n")
+
     def test_the_library_makes_the_bytes_of_the_program_and_prints_nothing(
             self):
-        by_library, by_program = self.dir / "lib", self.dir / "program"
-        for folder in [by_library, by_program]:
+        by_program = self.dir / "program"
+        by_libraries = [self.dir / "lib", self.dir / "shared_lib"]
+        for folder in [*by_libraries, by_program]:
             folder.mkdir()
             self.call(PROGRAM, "run", SCENARIOS / "ramp.toml", "-o", "ramp.h5",
                       "--set", "output_rate_Hz=1", cwd=folder)
-        said = self.call(self.dir / "build/user", SCENARIOS, SPEC,
-                         cwd=by_library)
-        self.assertEqual(said.stdout + said.stderr, "")
+        for folder, user in zip(by_libraries, ["user", "user_of_shared"]):
+            said = self.call(self.dir / "build" / user, SCENARIOS, SPEC,
+                             cwd=folder)
+            self.assertEqual(said.stdout + said.stderr, "")
+            (folder / "version").unlink()
         for line in COMMANDS.format(s=SCENARIOS, spec=SPEC).splitlines():
             words = line.split()
             said = self.call(PROGRAM, *words, cwd=by_program, allowed=(0, 3))
             if words[0] in PRINTED and words[1] != "set":
                 (by_program / PRINTED[words[0]]).write_text(said.stdout)
-        (by_library / "version").unlink()
         names = files_below(by_program)
-        self.assertEqual(files_below(by_library), names)
-        for name in names:
-            self.assertTrue(filecmp.cmp(by_program / name, by_library / name,
-                                        shallow=False), name)
+        for folder in by_libraries:
+            self.assertEqual(files_below(folder), names)
+            for name in names:
+                self.assertTrue(filecmp.cmp(by_program / name, folder / name,
+                                            shallow=False), name)

@@ -38,6 +38,19 @@ scenario = "\\u001b[31ms.toml"
             self.assertIn("campaign\\x1b[2J.toml", said)
             self.assertNotIn("\x1b", said)
 
+    def test_endings_in_capitals_are_those_in_small_letters(self):
+        for name, ending in [("a", "H5"), ("b", "h5"), ("a", "CSV"),
+                             ("b", "csv")]:
+            self.ok("run", "s.toml", "-o", f"{name}.{ending}")
+        for ending in "h5", "csv":
+            self.assertEqual(
+                (self.dir / f"a.{ending.upper()}").read_bytes(),
+                (self.dir / f"b.{ending}").read_bytes())
+            self.assertIn("recording",
+                          self.ok("info", f"a.{ending.upper()}"))
+        self.rejected("run", "s.toml", "-o", "a.MAT",
+                      says="expected a name that ends in .h5 or .csv")
+
     def test_a_file_that_is_replaced_hands_on_its_mode(self):
         for name in ["a.h5", "a.csv"]:
             self.write(name, "old")

@@ -66,6 +66,10 @@ class HelpPages(unittest.TestCase):
             listed = re.findall(r"^  (?:-\w, )?(--[\w-]+)",
                                 said(PROGRAM, "help", command), re.MULTILINE)
             self.assertEqual(self.completed(command, "--"), listed)
+        self.assertEqual(self.completed("--v"), ["--version"])
+        self.assertIn("--help", self.completed("-"))
+        self.assertEqual(self.completed("allan", "--kind", "o"),
+                         ["oadev", "ohdev"])
         levels = ["quasistatic", "envelope", "carrier"]
         self.assertEqual(self.completed("run", "--fidelity", ""), levels)
         self.assertEqual(self.completed("run", "--fidelity", "=", "e"),
@@ -104,8 +108,9 @@ class Packages(unittest.TestCase):
     def field(self, package, name):
         return said("dpkg-deb", "-f", self.debs[package], name)
 
-    def test_there_are_three(self):
+    def test_there_are_four(self):
         self.assertEqual(list(self.debs), ["beamgyro", "libbeamgyro-dev",
+                                           "libbeamgyro0.1",
                                            "python3-beamgyro"])
 
     def test_the_unpacked_module_runs_an_unpacked_scenario(self):
@@ -149,7 +154,9 @@ class Packages(unittest.TestCase):
     def test_the_packages_depend_on_what_they_need(self):
         needed = {"beamgyro": ["libhdf5-103-1", "libsundials-cvode6",
                                "libfmt9"],
-                  "libbeamgyro-dev": ["libsundials-dev", "libhdf5-dev"],
+                  "libbeamgyro-dev": ["libsundials-dev", "libhdf5-dev",
+                                      "libbeamgyro0.1 (= "],
+                  "libbeamgyro0.1": ["libhdf5-103-1", "libfmt9"],
                   "python3-beamgyro": ["python3-numpy", "python3-xarray",
                                        "libhdf5-103-1", "python3 (<< 3.12~)"]}
         for package in self.debs:

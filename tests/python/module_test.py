@@ -175,6 +175,29 @@ def test_progress_is_told_and_may_stop_the_work():
         bg.run(scenario, progress=stop)
 
 
+@pytest.mark.parametrize("least", [0.0, 0.1])
+def test_progress_that_returns_false_stops_the_work(least, tmp_path):
+    shares = []
+
+    def is_to_go_on(share):
+        shares.append(share)
+        return share < least
+
+    scenario = bg.Scenario(WARM_UP, set={"duration_s": 600,
+                                         "fidelity": "carrier"})
+    with pytest.raises(bg.Cancelled, match="cancelled"):
+        bg.run_to_file(scenario, tmp_path / "run.h5", progress=is_to_go_on)
+    assert least <= shares[-1] < 1
+    assert not (tmp_path / "run.h5").exists()
+    with pytest.raises(RuntimeError):
+        bg.characterise(SCENARIOS / "campaigns/small.toml", [20.0], devices=3,
+                        progress=lambda share: False)
+    # Nothing is left to stop where the work is done.
+    run = bg.run(WARM_UP, set={"duration_s": 1},
+                 progress=lambda share: share < 1)
+    assert run.sizes["time"] > 0
+
+
 def test_warnings_are_those_of_the_command():
     with pytest.warns(bg.BeamgyroWarning, match="soaks") as caught:
         bg.run(SCENARIOS / "ramp.toml", set={"duration_s": 60})

@@ -93,6 +93,23 @@ def test_limits_undecided_ones_and_warnings_are_shown(sweeps):
     assert "a &lt;word&gt;" in result._repr_html_()
 
 
+def test_objects_show_what_they_are():
+    device = bg.Device(SCENARIOS / "devices/nominal.toml",
+                       set={"beam.length_m": 0.0401})
+    scenario = bg.Scenario(SCENARIOS / "ten_minutes.toml", device=device)
+    campaign = bg.Campaign(SCENARIOS / "campaigns/small.toml", devices=7)
+    cubic = bg.train(SCENARIOS / "models/cubic.toml", bg.run(
+        SCENARIOS / "ramp.toml", set={"output_rate_Hz": 1}))
+    assert re.search(r"\|beam.length_m=0.0401\|.*\|drive frequency at 25 degC\|"
+                     r"+[\d.]+ Hz\|", words_of(device._repr_html_()))
+    assert "|600 s, 3000 samples at 5 Hz|" in words_of(scenario._repr_html_())
+    assert re.search(r"\|devices\|+7\|", words_of(campaign._repr_html_()))
+    shown = words_of(cubic._repr_html_())
+    assert f"|{cubic.method}|" in shown and "|rate, temperature|" in shown
+    own = bg.Compensator(lambda signals: signals.rate.values, name="a <b>")
+    assert "a &lt;b&gt;" in own._repr_html_()
+
+
 def test_progress_in_a_notebook_is_a_bar_of_tqdm(monkeypatch, capsys):
     pytest.importorskip("tqdm")
     # Another test may have imported it.

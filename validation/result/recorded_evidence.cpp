@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <stdexcept>
 #include <utility>
 
 #include "compensation/compensator/run_comparison.h"
 #include "compensation/scoring/rate_injection.h"
-#include "dataset/files/sha256.h"
 #include "parallel/work_queue.h"
 #include "validation/evidence/recorded_purpose.h"
 
@@ -69,26 +69,24 @@ DeviceEvidence evidence_of(std::vector<ReadRun> read,
 
 }  // namespace
 
-DeviceEvidence recorded_evidence(const std::vector<std::filesystem::path>& runs,
+DeviceEvidence recorded_evidence(std::size_t count,
                                  const RecordedAnswering& answering,
                                  std::size_t threads,
                                  const RecordingReader& reader,
                                  std::vector<std::string>& warnings) {
-  std::vector<ReadRun> read(runs.size());
-  std::vector<std::vector<std::string>> warned(runs.size());
-  std::vector<Recording> recordings(runs.size());
-  std::vector<RunMark> marks(runs.size());
-  for_each_task(runs.size(), threads, [&](std::size_t k, std::size_t) {
-    TrainingRun run{.name = runs[k].string(),
-                    .sha256 = sha256_of_file(runs[k]),
-                    .recording = reader(runs[k], &warned[k])};
+  std::vector<ReadRun> read(count);
+  std::vector<std::vector<std::string>> warned(count);
+  std::vector<Recording> recordings(count);
+  std::vector<RunMark> marks(count);
+  for_each_task(count, threads, [&](std::size_t k, std::size_t) {
+    TrainingRun run = reader(k, &warned[k]);
     marks[k].file = {.name = run.name, .sha256 = run.sha256};
     // One without a temperature is refused by what reads it.
     if (find_column(run.recording, "temperature") != nullptr)
       marks[k] = mark_of(run);
     recordings[k] = std::move(run.recording);
-    read[k] = named_run(runs[k].string(), recordings[k]);
-    read[k].name = runs[k].filename().string();
+    read[k] = named_run(run.name, recordings[k]);
+    read[k].name = std::filesystem::path(run.name).filename().string();
     read[k].sha256 = run.sha256;
   });
   require_different_runs(marks);

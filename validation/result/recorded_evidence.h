@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -28,15 +27,16 @@ struct RecordedAnswering {
   bool requires_provenance = false;  // a compensator without one fails
 };
 
-/// Reads a recording file, and adds what is to be warned of.
-using RecordingReader = std::function<Recording(
-    const std::filesystem::path& path, std::vector<std::string>* warnings)>;
+/// Returns a recording by its number, with its name and hash, and adds what is
+/// to be warned of.
+using RecordingReader =
+    std::function<TrainingRun(std::size_t k, std::vector<std::string>* warned)>;
 
-/// Reads recordings with `read` and answers them. Each shows its
+/// Reads `count` recordings with `read` and answers them. Each shows its
 /// recorded_purpose(); one at rest is read from kRestBegins on. Throws
 /// std::invalid_argument that names a recording which cannot be read, or has no
 /// true_rate.
-DeviceEvidence recorded_evidence(const std::vector<std::filesystem::path>& runs,
+DeviceEvidence recorded_evidence(std::size_t count,
                                  const RecordedAnswering& answering,
                                  std::size_t threads,
                                  const RecordingReader& read,
