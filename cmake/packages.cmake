@@ -42,6 +42,7 @@ set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
 set(CPACK_DEBIAN_DEBIAN_LIB_PACKAGE_NAME ${SHARED_PACKAGE})
 set(CPACK_DEBIAN_DEBIAN_LIB_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_DEBIAN_LIB_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_DEBIAN_LIB_PACKAGE_CONTROL_EXTRA ${DEBIAN}/triggers)
 set(CPACK_DEBIAN_DEBIAN_LIB_DESCRIPTION "simulator of vibrating-beam piezo gyros - shared library
 Simulates a vibrating-beam piezoelectric gyro, from its beam, patches, glue and
 mount up to the volts at its pin, and trains and scores compensators of its
