@@ -172,10 +172,13 @@ def start_gyro(device: Device, *, seed: int = 0,
                ambient: Optional[float] = None,
                powered: bool = True) -> Gyro:
     """Return the gyro of a device; see `Device.start`."""
-    if ambient is None:
-        ambient = 25.0 if temperature_degC is None else temperature_degC
-    given = {key: value for key, value in locals().items() if key != "device"}
     number = _arguments.number
+    given = {key: value for key, value in locals().items()
+             if key not in ("device", "number")}
+    own = (None if temperature_degC is None
+           else number(temperature_degC, "temperature_degC"))
+    if ambient is None:
+        ambient = 25.0 if own is None else own
     motion = [number(value, name) for name, value in (
         ("rate", rate), ("cross_rate_x", cross_rate_x),
         ("cross_rate_y", cross_rate_y), ("acceleration_x", acceleration_x),
@@ -185,8 +188,7 @@ def start_gyro(device: Device, *, seed: int = 0,
         device._native, _checks.text(fidelity, "fidelity"),
         _arguments.seed(seed, _arguments.LARGEST_TOML_SEED), bool(noise),
         number(noise_rate_Hz, "noise_rate_Hz"), bool(stirred),
-        None if temperature_degC is None
-        else number(temperature_degC, "temperature_degC"),
+        own,
         None if age_hours is None else number(age_hours, "age_hours"),
         [(number(t, "history"), number(T, "history")) for t, T in history],
         motion, bool(powered))
