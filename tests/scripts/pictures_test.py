@@ -30,7 +30,7 @@ class Pictures(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
             for part in ("docs/pictures", "scripts", "python", "scenarios",
-                         "specs", "validation/page"):
+                         "specs", "validation/page", "examples/python"):
                 shutil.copytree(ROOT / part, root / part)
             with mock.patch.multiple(
                     pictures, ROOT=root, PICTURES=root / "docs/pictures",
