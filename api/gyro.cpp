@@ -112,62 +112,62 @@ GyroTruth truth_of(const internal::StepSample& s) {
           .true_ambient_temperature = s.true_ambient_temperature};
 }
 
-// A signal of samples in a recording.
-struct SampleSignal {
-  const char* name;
-  double GyroSample::*measured = nullptr;
-  double GyroTruth::*truth = nullptr;
-  bool is_motion = false;  // has no column where it is 0 all the time
-};
-constexpr std::array kSampleSignals = {
-    SampleSignal{"output", &GyroSample::output},
-    SampleSignal{"rate", &GyroSample::rate},
-    SampleSignal{"temperature", &GyroSample::temperature},
-    SampleSignal{"drive_frequency", &GyroSample::drive_frequency},
-    SampleSignal{"drive_voltage", &GyroSample::drive_voltage},
-    SampleSignal{"quadrature", &GyroSample::quadrature},
-    SampleSignal{"true_rate", {}, &GyroTruth::true_rate},
-    SampleSignal{"true_bias", {}, &GyroTruth::true_bias},
-    SampleSignal{"true_spurious_bias", {}, &GyroTruth::true_spurious_bias},
-    SampleSignal{"true_drive_frequency", {}, &GyroTruth::true_drive_frequency},
-    SampleSignal{"true_cross_rate_x", {}, &GyroTruth::true_cross_rate_x, true},
-    SampleSignal{"true_cross_rate_y", {}, &GyroTruth::true_cross_rate_y, true},
-    SampleSignal{
-        "true_acceleration_x", {}, &GyroTruth::true_acceleration_x, true},
-    SampleSignal{
-        "true_acceleration_y", {}, &GyroTruth::true_acceleration_y, true},
-    SampleSignal{
-        "true_acceleration_z", {}, &GyroTruth::true_acceleration_z, true},
-    SampleSignal{
-        "true_fictive_temperature", {}, &GyroTruth::true_fictive_temperature},
-    SampleSignal{"true_hysteresis", {}, &GyroTruth::true_hysteresis},
-    SampleSignal{
-        "true_beam_temperature", {}, &GyroTruth::true_beam_temperature},
-    SampleSignal{"true_pzt_temperature", {}, &GyroTruth::true_pzt_temperature},
-    SampleSignal{
-        "true_mount_temperature", {}, &GyroTruth::true_mount_temperature},
-    SampleSignal{
-        "true_housing_temperature", {}, &GyroTruth::true_housing_temperature},
-    SampleSignal{
-        "true_board_temperature", {}, &GyroTruth::true_board_temperature},
-    SampleSignal{
-        "true_sensor_temperature", {}, &GyroTruth::true_sensor_temperature},
-    SampleSignal{
-        "true_ambient_temperature", {}, &GyroTruth::true_ambient_temperature}};
+constexpr GyroSignal measured(const char* name, double GyroSample::*value) {
+  return {name, value, nullptr};
+}
+constexpr GyroSignal truth(const char* name, double GyroTruth::*value) {
+  return {name, nullptr, value};
+}
+constexpr std::array kSignals = {
+    measured("output", &GyroSample::output),
+    measured("rate", &GyroSample::rate),
+    measured("temperature", &GyroSample::temperature),
+    measured("drive_frequency", &GyroSample::drive_frequency),
+    measured("drive_voltage", &GyroSample::drive_voltage),
+    measured("quadrature", &GyroSample::quadrature),
+    truth("true_rate", &GyroTruth::true_rate),
+    truth("true_bias", &GyroTruth::true_bias),
+    truth("true_spurious_bias", &GyroTruth::true_spurious_bias),
+    truth("true_drive_frequency", &GyroTruth::true_drive_frequency),
+    truth("true_cross_rate_x", &GyroTruth::true_cross_rate_x),
+    truth("true_cross_rate_y", &GyroTruth::true_cross_rate_y),
+    truth("true_acceleration_x", &GyroTruth::true_acceleration_x),
+    truth("true_acceleration_y", &GyroTruth::true_acceleration_y),
+    truth("true_acceleration_z", &GyroTruth::true_acceleration_z),
+    truth("true_fictive_temperature", &GyroTruth::true_fictive_temperature),
+    truth("true_hysteresis", &GyroTruth::true_hysteresis),
+    truth("true_beam_temperature", &GyroTruth::true_beam_temperature),
+    truth("true_pzt_temperature", &GyroTruth::true_pzt_temperature),
+    truth("true_mount_temperature", &GyroTruth::true_mount_temperature),
+    truth("true_housing_temperature", &GyroTruth::true_housing_temperature),
+    truth("true_board_temperature", &GyroTruth::true_board_temperature),
+    truth("true_sensor_temperature", &GyroTruth::true_sensor_temperature),
+    truth("true_ambient_temperature", &GyroTruth::true_ambient_temperature)};
+
+constexpr std::array kInputs = {
+    GyroInputSignal{"rate", "degree/s", &GyroInputs::rate},
+    GyroInputSignal{"cross_rate_x", "degree/s", &GyroInputs::cross_rate_x},
+    GyroInputSignal{"cross_rate_y", "degree/s", &GyroInputs::cross_rate_y},
+    GyroInputSignal{"acceleration_x", "m/s2", &GyroInputs::acceleration_x},
+    GyroInputSignal{"acceleration_y", "m/s2", &GyroInputs::acceleration_y},
+    GyroInputSignal{"acceleration_z", "m/s2", &GyroInputs::acceleration_z},
+    GyroInputSignal{"ambient_temperature", "degC",
+                    &GyroInputs::ambient_temperature}};
+
+// Whether a column of a recording is only there where it is not 0 all the time.
+bool is_motion(std::string_view name) {
+  return name.starts_with("true_cross_rate") ||
+         name.starts_with("true_acceleration");
+}
 
 // What a gyro does not have, and motions that never move, have no column.
 void drop_absent(Recording& recording) {
-  for (std::size_t i = kSampleSignals.size(); i-- > 0;) {
-    const std::vector<double>& values = recording.columns[i].values;
-    const SampleSignal& signal = kSampleSignals[i];
-    const bool is_absent =
-        (signal.truth != nullptr && std::isnan(values.front())) ||
-        (signal.is_motion &&
-         std::ranges::all_of(values, [](double v) { return v == 0; }));
-    if (is_absent)
-      recording.columns.erase(recording.columns.begin() +
-                              static_cast<std::ptrdiff_t>(i));
-  }
+  std::erase_if(recording.columns, [](const Column& column) {
+    return (column.role == Role::kTruth && std::isnan(column.values.front())) ||
+           (is_motion(column.name) &&
+            std::ranges::all_of(column.values,
+                                [](double v) { return v == 0; }));
+  });
 }
 
 void take_inputs(internal::StateArchive& archive, GyroInputs& inputs) {
@@ -209,6 +209,9 @@ std::string state_key(const Device& device, const GyroStart& start) {
 }
 
 }  // namespace
+
+std::span<const GyroInputSignal> gyro_inputs() { return kInputs; }
+std::span<const GyroSignal> gyro_signals() { return kSignals; }
 
 struct Gyro::Parts {
   Device device;
@@ -264,7 +267,7 @@ Recording Gyro::advance(double duration, std::span<const GyroInputs> inputs,
     throw std::invalid_argument("no inputs; expected one for each step");
   Parts next = *parts_;
   Recording recording;
-  for (const SampleSignal& signal : kSampleSignals) {
+  for (const GyroSignal& signal : kSignals) {
     recording.columns.push_back(internal::column_of(signal.name, {}));
     recording.columns.back().values.reserve(inputs.size());
   }
@@ -278,12 +281,9 @@ Recording Gyro::advance(double duration, std::span<const GyroInputs> inputs,
     next.take(inputs[k]);
     recording.time.push_back(next.sample.time);
     recording.status.push_back(next.sample.status);
-    for (std::size_t i = 0; i < kSampleSignals.size(); ++i) {
-      const SampleSignal& signal = kSampleSignals[i];
-      recording.columns[i].values.push_back(signal.measured != nullptr
-                                                ? next.sample.*signal.measured
-                                                : next.truth.*signal.truth);
-    }
+    for (std::size_t i = 0; i < kSignals.size(); ++i)
+      recording.columns[i].values.push_back(
+          kSignals[i].of(next.sample, next.truth));
     if ((k + 1) % kReported == 0 || k + 1 == inputs.size())
       internal::report(progress, static_cast<double>(k + 1) /
                                      static_cast<double>(inputs.size()));

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cmath>
@@ -12,6 +13,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -33,24 +35,18 @@ struct LiveArguments {
   bool without_noise = false, linear = false, truth = false, binary = false;
 };
 
-struct LiveColumn {
-  const char* name;
-  double GyroSample::*shown = nullptr;
-  double GyroTruth::*truth = nullptr;
-};
-constexpr std::array kShownColumns = {
-    LiveColumn{"output", &GyroSample::output},
-    LiveColumn{"rate", &GyroSample::rate},
-    LiveColumn{"temperature", &GyroSample::temperature},
-    LiveColumn{"drive_frequency", &GyroSample::drive_frequency},
-    LiveColumn{"drive_voltage", &GyroSample::drive_voltage},
-    LiveColumn{"quadrature", &GyroSample::quadrature}};
-constexpr std::array kTruthColumns = {
-    LiveColumn{"true_rate", {}, &GyroTruth::true_rate},
-    LiveColumn{"true_bias", {}, &GyroTruth::true_bias},
-    LiveColumn{"true_beam_temperature", {}, &GyroTruth::true_beam_temperature},
-    LiveColumn{
-        "true_ambient_temperature", {}, &GyroTruth::true_ambient_temperature}};
+// The signals of an answer: all that is measured, and with `truth` some of it.
+std::vector<GyroSignal> answered_signals(bool truth) {
+  constexpr std::array<std::string_view, 4> kTruths = {
+      "true_rate", "true_bias", "true_beam_temperature",
+      "true_ambient_temperature"};
+  std::vector<GyroSignal> signals;
+  for (const GyroSignal& signal : gyro_signals())
+    if (signal.measured != nullptr ||
+        (truth && std::ranges::find(kTruths, signal.name) != kTruths.end()))
+      signals.push_back(signal);
+  return signals;
+}
 
 // The gyro of a stream: each line is a time and what acts until then.
 class LiveGyro {
@@ -58,7 +54,8 @@ class LiveGyro {
   LiveGyro(const LiveArguments& arguments)
       : device_(Device::read(arguments.device, arguments.overrides)),
         start_(arguments.start),
-        linear_(arguments.linear) {
+        linear_(arguments.linear),
+        signals_(answered_signals(arguments.truth)) {
     start_.noise = !arguments.without_noise;
     Gyro(device_, start_);  // a device or option that is wrong is so at once
   }
@@ -85,22 +82,23 @@ class LiveGyro {
   }
 
   // The values of the answer, nan for a line that is no sample.
-  std::vector<double> answer(bool is_sample, bool truth) const {
-    std::vector<double> values = {last_.time, 0};
-    const auto add = [&](const auto& answers) {
-      for (const LiveColumn& one : answers)
-        values.push_back(one.shown != nullptr ? gyro_->now().*one.shown
-                                              : gyro_->truth().*one.truth);
-    };
-    if (is_sample) {
-      values[1] = gyro_->now().status;
-      add(kShownColumns);
-      if (truth) add(kTruthColumns);
-      return values;
-    }
-    values.assign(2 + kShownColumns.size() + (truth ? kTruthColumns.size() : 0),
-                  std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> answer(bool is_sample) const {
+    std::vector<double> values(2 + signals_.size(),
+                               std::numeric_limits<double>::quiet_NaN());
+    if (!is_sample) return values;
+    values[0] = last_.time;
+    values[1] = gyro_->now().status;
+    for (std::size_t i = 0; i < signals_.size(); ++i)
+      values[2 + i] = signals_[i].of(gyro_->now(), gyro_->truth());
     return values;
+  }
+
+  // The line of names of the answers.
+  std::string names() const {
+    std::string names = "time,status";
+    for (const GyroSignal& signal : signals_)
+      names += fmt::format(",{}", signal.name);
+    return names + "\n";
   }
 
  private:
@@ -117,19 +115,10 @@ class LiveGyro {
   Device device_;
   GyroStart start_;
   bool linear_;
+  std::vector<GyroSignal> signals_;
   TimedInputs last_;
   std::optional<Gyro> gyro_;
 };
-
-std::string names_of(bool truth) {
-  std::string names = "time,status";
-  for (const LiveColumn& one : kShownColumns)
-    names += fmt::format(",{}", one.name);
-  if (truth)
-    for (const LiveColumn& one : kTruthColumns)
-      names += fmt::format(",{}", one.name);
-  return names + "\n";
-}
 
 std::string shown(const std::vector<double>& values, bool binary) {
   if (binary) {
@@ -154,7 +143,7 @@ void answer_line(LiveGyro& gyro, const std::string& place, const Inputs& inputs,
     refused.add(bad);
     is_sample = false;
   }
-  text += shown(gyro.answer(is_sample, arguments.truth), arguments.binary);
+  text += shown(gyro.answer(is_sample), arguments.binary);
 }
 
 class LineNumber {
@@ -196,7 +185,7 @@ void answer_text(LiveGyro& gyro, const LiveArguments& arguments,
       if (is_empty(*line)) continue;
       if (!columns) {
         columns.emplace(line->text, place);
-        text += names_of(arguments.truth);
+        text += gyro.names();
         continue;
       }
       answer_line(
@@ -274,7 +263,7 @@ void answer_binary(LiveGyro& gyro, const LiveArguments& arguments,
       if (!names) continue;
       columns.emplace(*names, "standard input:1");
       values.resize(columns->count());
-      text = names_of(arguments.truth);
+      text = gyro.names();
     }
     while (input.take(values)) {
       const std::string here = place();

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -13,20 +12,6 @@
 
 namespace beamgyro::internal {
 namespace {
-
-struct InputColumn {
-  std::string_view name, unit;
-  double GyroInputs::*input;
-};
-constexpr std::array kInputColumns = {
-    InputColumn{"rate", "degree/s", &GyroInputs::rate},
-    InputColumn{"cross_rate_x", "degree/s", &GyroInputs::cross_rate_x},
-    InputColumn{"cross_rate_y", "degree/s", &GyroInputs::cross_rate_y},
-    InputColumn{"acceleration_x", "m/s2", &GyroInputs::acceleration_x},
-    InputColumn{"acceleration_y", "m/s2", &GyroInputs::acceleration_y},
-    InputColumn{"acceleration_z", "m/s2", &GyroInputs::acceleration_z},
-    InputColumn{"ambient_temperature", "degC",
-                &GyroInputs::ambient_temperature}};
 
 constexpr const char* kExpectedNames =
     "expected time, and any of rate, cross_rate_x, cross_rate_y, "
@@ -70,14 +55,14 @@ LiveColumns::LiveColumns(const std::string& names, const std::string& place) {
     const ColumnName given = column_name(trimmed(cell));
     std::string_view bare = given.name;
     if (bare.starts_with("true_")) bare.remove_prefix(5);
-    const auto* const known =
-        std::ranges::find(kInputColumns, bare, &InputColumn::name);
-    const bool is_input = known != kInputColumns.end();
+    const auto inputs = gyro_inputs();
+    const auto known = std::ranges::find(inputs, bare, &GyroInputSignal::name);
+    const bool is_input = known != inputs.end();
     if (!is_input && given.name != "time" && given.name != "powered")
       throw std::invalid_argument(
           fmt::format("{}: column \"{}\" is no input of a gyro; {}", place,
                       given.name, kExpectedNames));
-    const std::string_view unit = is_input               ? known->unit
+    const std::string_view unit = is_input               ? known->units
                                   : given.name == "time" ? "s"
                                                          : "1";
     if (!given.unit.empty() && given.unit != unit)
@@ -88,7 +73,7 @@ LiveColumns::LiveColumns(const std::string& names, const std::string& place) {
     if (std::ranges::find(columns_, name, &Column::name) != columns_.end())
       throw std::invalid_argument(
           fmt::format("{}: column {} is there twice", place, name));
-    columns_.push_back({name, is_input ? known->input : nullptr});
+    columns_.push_back({name, is_input ? known->value : nullptr});
   }
   if (std::ranges::find(columns_, "time", &Column::name) == columns_.end())
     throw std::invalid_argument(

@@ -75,6 +75,28 @@ struct GyroTruth {
   double true_ambient_temperature = 0;
 };
 
+/// An input of a gyro that is a number.
+struct GyroInputSignal {
+  const char* name;   ///< that of the member
+  const char* units;  ///< as in recordings
+  double GyroInputs::*value;
+};
+/// All of them, in the order of the members.
+std::span<const GyroInputSignal> gyro_inputs();
+
+/// A signal of a sample that is a number: measured, or truth.
+struct GyroSignal {
+  const char* name;              ///< as in recordings, and that of the member
+  double GyroSample::*measured;  ///< null for a truth
+  double GyroTruth::*truth;      ///< null for what is measured
+
+  double of(const GyroSample& sample, const GyroTruth& truths) const {
+    return measured != nullptr ? sample.*measured : truths.*truth;
+  }
+};
+/// All of them but the time, in the order of the members.
+std::span<const GyroSignal> gyro_signals();
+
 /// How inputs of a series act: each is held over its step, or reached at its
 /// end along a straight line from the one before.
 enum class GyroSteps { kHeld, kLinear };

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -19,18 +21,13 @@
 namespace beamgyro::python {
 namespace {
 
-struct InputName {
-  const char* name;
-  double GyroInputs::*value;
-};
-constexpr std::array kInputs = {
-    InputName{"rate", &GyroInputs::rate},
-    InputName{"cross_rate_x", &GyroInputs::cross_rate_x},
-    InputName{"cross_rate_y", &GyroInputs::cross_rate_y},
-    InputName{"acceleration_x", &GyroInputs::acceleration_x},
-    InputName{"acceleration_y", &GyroInputs::acceleration_y},
-    InputName{"acceleration_z", &GyroInputs::acceleration_z},
-    InputName{"ambient", &GyroInputs::ambient_temperature}};
+/// How an input is called in Python.
+const char* name_of(const GyroInputSignal& input) {
+  return input.value == &GyroInputs::ambient_temperature ? "ambient"
+                                                         : input.name;
+}
+const std::span<const GyroInputSignal> kInputs = gyro_inputs();
+constexpr std::size_t kInputCount = 7;
 
 /// A sample with its truth.
 struct Shown {
@@ -59,11 +56,11 @@ bool truth_of(const py::handle& given) {
 }
 
 /// What is given for an input: nothing, a number, or a pair of them.
-void take_input(const py::handle& given, const InputName& input,
+void take_input(const py::handle& given, const GyroInputSignal& input,
                 GyroInputs& from, GyroInputs& to) {
   if (given.is_none()) return;
   if (!py::isinstance<py::tuple>(given) && !py::isinstance<py::list>(given)) {
-    from.*input.value = to.*input.value = number_of(given, input.name);
+    from.*input.value = to.*input.value = number_of(given, name_of(input));
     return;
   }
   const auto pair = py::reinterpret_borrow<py::sequence>(given);
@@ -71,12 +68,12 @@ void take_input(const py::handle& given, const InputName& input,
     throw std::invalid_argument(
         fmt::format("{} has {} values; expected a number, or a pair of them "
                     "for the begin and the end of the step",
-                    input.name, pair.size()));
-  from.*input.value = number_of(py::object(pair[0]), input.name);
-  to.*input.value = number_of(py::object(pair[1]), input.name);
+                    name_of(input), pair.size()));
+  from.*input.value = number_of(py::object(pair[0]), name_of(input));
+  to.*input.value = number_of(py::object(pair[1]), name_of(input));
 }
 
-using Given = std::array<py::handle, kInputs.size()>;
+using Given = std::array<py::handle, kInputCount>;
 
 void take_inputs(const Given& given, const py::handle& powered,
                  GyroInputs& from, GyroInputs& to) {
@@ -133,8 +130,8 @@ std::vector<GyroInputs> inputs_of(const Arrays& values,
         inputs[k].powered = array.data()[k] != 0;
       continue;
     }
-    for (const InputName& input : kInputs)
-      if (name == input.name)
+    for (const GyroInputSignal& input : kInputs)
+      if (name == name_of(input))
         for (std::size_t k = 0; k < inputs.size(); ++k)
           inputs[k].*input.value = array.data()[k];
   }
@@ -156,62 +153,23 @@ SharedRecording advance(Gyro& self, double dt, std::size_t count,
   return std::make_shared<Recording>(std::move(recording));
 }
 
-template <class Source>
-void put(py::dict& arrays, const char* name, const std::vector<Shown>& all,
-         double Source::*member, Source Shown::*source) {
-  py::array_t<double> values(static_cast<py::ssize_t>(all.size()));
-  double* const out = values.mutable_data();
-  for (std::size_t k = 0; k < all.size(); ++k) out[k] = all[k].*source.*member;
-  arrays[name] = values;
-}
-
-struct SampleName {
-  const char* name;
-  double GyroSample::*value;
-};
-constexpr std::array kSamples = {
-    SampleName{"time", &GyroSample::time},
-    SampleName{"output", &GyroSample::output},
-    SampleName{"rate", &GyroSample::rate},
-    SampleName{"temperature", &GyroSample::temperature},
-    SampleName{"drive_frequency", &GyroSample::drive_frequency},
-    SampleName{"drive_voltage", &GyroSample::drive_voltage},
-    SampleName{"quadrature", &GyroSample::quadrature}};
-struct TruthName {
-  const char* name;
-  double GyroTruth::*value;
-};
-constexpr std::array kTruths = {
-    TruthName{"true_rate", &GyroTruth::true_rate},
-    TruthName{"true_bias", &GyroTruth::true_bias},
-    TruthName{"true_spurious_bias", &GyroTruth::true_spurious_bias},
-    TruthName{"true_drive_frequency", &GyroTruth::true_drive_frequency},
-    TruthName{"true_cross_rate_x", &GyroTruth::true_cross_rate_x},
-    TruthName{"true_cross_rate_y", &GyroTruth::true_cross_rate_y},
-    TruthName{"true_acceleration_x", &GyroTruth::true_acceleration_x},
-    TruthName{"true_acceleration_y", &GyroTruth::true_acceleration_y},
-    TruthName{"true_acceleration_z", &GyroTruth::true_acceleration_z},
-    TruthName{"true_fictive_temperature", &GyroTruth::true_fictive_temperature},
-    TruthName{"true_hysteresis", &GyroTruth::true_hysteresis},
-    TruthName{"true_beam_temperature", &GyroTruth::true_beam_temperature},
-    TruthName{"true_pzt_temperature", &GyroTruth::true_pzt_temperature},
-    TruthName{"true_mount_temperature", &GyroTruth::true_mount_temperature},
-    TruthName{"true_housing_temperature", &GyroTruth::true_housing_temperature},
-    TruthName{"true_board_temperature", &GyroTruth::true_board_temperature},
-    TruthName{"true_sensor_temperature", &GyroTruth::true_sensor_temperature},
-    TruthName{"true_ambient_temperature",
-              &GyroTruth::true_ambient_temperature}};
-
 py::dict shown_arrays(const std::vector<Shown>& all) {
+  const auto count = static_cast<py::ssize_t>(all.size());
   py::dict arrays;
-  for (const SampleName& one : kSamples)
-    put(arrays, one.name, all, one.value, &Shown::sample);
-  py::array_t<std::uint8_t> status(static_cast<py::ssize_t>(all.size()));
+  const auto put = [&](const char* name, const auto& value) {
+    py::array_t<double> values(count);
+    double* const out = values.mutable_data();
+    for (std::size_t k = 0; k < all.size(); ++k) out[k] = value(all[k]);
+    arrays[name] = values;
+  };
+  put("time", [](const Shown& s) { return s.sample.time; });
+  for (const GyroSignal& signal : gyro_signals())
+    put(signal.name,
+        [&](const Shown& s) { return signal.of(s.sample, s.truth); });
+  py::array_t<std::uint8_t> status(count);
   for (std::size_t k = 0; k < all.size(); ++k)
     status.mutable_data()[k] = all[k].sample.status;
   arrays["status"] = status;
-  for (const TruthName& one : kTruths)
-    put(arrays, one.name, all, one.value, &Shown::truth);
   return arrays;
 }
 
@@ -234,19 +192,23 @@ py::dict step_each(const std::vector<Gyro*>& gyros, double dt,
 
 void bind_gyro(py::module_& core) {
   py::class_<Shown> sample(core, "Sample");
-  for (const SampleName& one : kSamples)
-    sample.def_property_readonly(
-        one.name,
-        [member = one.value](const Shown& s) { return s.sample.*member; });
   sample
+      .def_property_readonly("time",
+                             [](const Shown& s) { return s.sample.time; })
       .def_property_readonly("status",
                              [](const Shown& s) { return s.sample.status; })
       .def_property_readonly("truth", [](const Shown& s) { return s.truth; });
   py::class_<GyroTruth> truth(core, "Truth");
-  for (const TruthName& one : kTruths)
-    truth.def_property_readonly(
-        one.name,
-        [member = one.value](const GyroTruth& t) { return t.*member; });
+  for (const GyroSignal& signal : gyro_signals())
+    if (signal.measured != nullptr)
+      sample.def_property_readonly(signal.name,
+                                   [member = signal.measured](const Shown& s) {
+                                     return s.sample.*member;
+                                   });
+    else
+      truth.def_property_readonly(
+          signal.name,
+          [member = signal.truth](const GyroTruth& t) { return t.*member; });
   py::class_<Gyro>(core, "Gyro")
       .def_static("start", &start_gyro)
       .def("now", &now)
