@@ -26,6 +26,8 @@ class StateArchive {
   bool is_reading() const { return written_ == nullptr; }
   /// Returns whether everything has been read.
   bool at_end() const { return left_.empty(); }
+  /// What has not been read.
+  std::string_view rest() const { return left_; }
 
   /// Takes numbers, arrays of them, and types that have archive(StateArchive&).
   /// Throws std::invalid_argument when there are too few bytes.
