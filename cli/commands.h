@@ -16,6 +16,7 @@ void add_device(CommandLine& program);
 void add_run(CommandLine& program);
 void add_generate(CommandLine& program);
 void add_sensitivity(CommandLine& program);
+void add_fmu(CommandLine& program);
 void add_import(CommandLine& program);
 void add_train(CommandLine& program);
 void add_compensate(CommandLine& program);
