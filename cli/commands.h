@@ -17,6 +17,7 @@ void add_run(CommandLine& program);
 void add_generate(CommandLine& program);
 void add_live(CommandLine& program);
 void add_sensitivity(CommandLine& program);
+void add_fmu(CommandLine& program);
 void add_import(CommandLine& program);
 void add_train(CommandLine& program);
 void add_compensate(CommandLine& program);

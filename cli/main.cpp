@@ -126,6 +126,7 @@ int run_program(const std::vector<std::string>& words) {
   add_compensate(program);
   add_validate(program);
   add_export(program);
+  add_fmu(program);
   add_plan(program);
   add_import(program);
   add_info(program);

@@ -145,6 +145,10 @@ const ConfigNode* ConfigDocument::value(std::string_view dotted_key) const {
   return node;
 }
 
+void ConfigDocument::collect_numbers(std::vector<NumberRead>* numbers) const {
+  state_->numbers = numbers;
+}
+
 const std::string& ConfigDocument::text() const { return state_->text; }
 
 const std::filesystem::path& ConfigDocument::path() const {

@@ -5,12 +5,15 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "config/overrides.h"
 #include "config/range.h"
 #include "config/table.h"
 
 namespace beamgyro::internal {
+
+struct NumberRead;
 
 /// A TOML file with the overrides of its command applied. It is read through
 /// root(). When everything has been read, reject_unknown_keys() finds keys that
@@ -37,6 +40,10 @@ class ConfigDocument {
   /// Returns the value of a dotted key, or null. This does not count as reading
   /// the key.
   const ConfigNode* value(std::string_view dotted_key) const;
+
+  /// Adds every number that is read from now on, with its range, to `numbers`,
+  /// which must live as long as the document is read. A null pointer ends this.
+  void collect_numbers(std::vector<NumberRead>* numbers) const;
 
   const ConfigTable& root() const { return root_; }
   const std::string& text() const;  // byte for byte as read

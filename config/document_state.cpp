@@ -77,6 +77,11 @@ void DocumentState::note_known(const std::string& key_path) {
   overrides->known_keys.insert(key_path);
 }
 
+void DocumentState::note_number(const std::string& key, double value,
+                                const Range& range, bool whole) const {
+  if (numbers != nullptr) numbers->push_back({key, value, range, whole});
+}
+
 void DocumentState::mark_read(const ConfigNode& node) const {
   node.known = true;
   if (node.origin) overrides->overrides[*node.origin].used = true;

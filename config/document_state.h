@@ -10,6 +10,7 @@
 
 #include "config/config_node.h"
 #include "config/overrides.h"
+#include "config/range.h"
 
 namespace beamgyro::internal {
 
@@ -33,6 +34,14 @@ struct OverrideSet {
 void insert_override(const Override& set, std::size_t origin,
                      const std::string& document, ConfigNode& root);
 
+/// A number that was read from a document.
+struct NumberRead {
+  std::string key;  // dotted; of an element of an array "key[0]"
+  double value;
+  Range range;         // in which it must lie
+  bool whole = false;  // read as an integer
+};
+
 /// State that a document shares with its tables.
 struct DocumentState {
   std::filesystem::path path;
@@ -42,9 +51,13 @@ struct DocumentState {
   std::shared_ptr<const ConfigNode> file_root;  // before the overrides
   std::set<std::string> known_keys;  // dotted keys somebody asked for
   std::shared_ptr<OverrideSet> overrides;
+  std::vector<NumberRead>* numbers = nullptr;  // where they are noted
 
   /// Records that the key `path` was asked for.
   void note_known(const std::string& path);
+  /// Notes a number where somebody collects them.
+  void note_number(const std::string& key, double value, const Range& range,
+                   bool whole) const;
   /// Records that `node` was read.
   void mark_read(const ConfigNode& node) const;
   /// Returns "file:line:column", or "set KEY=VALUE" for a value that came from

@@ -73,6 +73,7 @@ double read_number(const ConfigValue& value, const Range& range) {
                            text_of(range),
                            other_unit(value.path, number, range)));
   }
+  value.document.note_number(value.path, number, range, false);
   return number;
 }
 
@@ -93,6 +94,9 @@ long read_integer(const ConfigValue& value, long low, long high) {
     value.fail(fmt::format("{} is out of range; expected {}", node.integer,
                            text_of_integers(low, high)));
   }
+  value.document.note_number(
+      value.path, static_cast<double>(node.integer),
+      between(static_cast<double>(low), static_cast<double>(high)), true);
   return node.integer;
 }
 

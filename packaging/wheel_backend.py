@@ -28,6 +28,7 @@ FIRST_TIME = 315532800  # 1980-01-01, of which zip begins to count
 # What an installation has beside the module, and where a wheel has it: pip puts
 # `scripts` into bin/, and `data` into the prefix.
 PLACES = {"lib/python3/dist-packages": "", "bin": "scripts",
+          "lib/beamgyro": "data/lib/beamgyro",
           "share/beamgyro": "data/share/beamgyro"}
 
 

@@ -21,7 +21,7 @@ from check_includes import MAY_INCLUDE, room_of
 # The sources that share bundles, as prefixes of paths; the first that fits.
 LIBRARIES = ["dataset/set/", "dataset/", "sim/numerics/", "sim/thermal/",
              "sim/signal/", "sim/memory/", "sim/device/", "sim/dynamics/",
-             "sim/stepper/", "sim/scenario/", "sim/campaign/", "compensation/", "config/",
+             "sim/stepper/", "sim/scenario/", "sim/campaign/", "fmu/", "compensation/", "config/",
              "linear_algebra/", "statistics/", "random/", "parallel/",
              "validation/", "planning/", "sensitivity/", "report/", "api/", "cli/",
              "python/"]

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "config/document.h"
+#include "config/document_state.h"
 #include "tests/config/rejection.h"
 
 namespace beamgyro::internal::table_test {
@@ -42,6 +43,27 @@ TEST_F(Table, TellsNumbersFromOtherValues) {
     EXPECT_TRUE(beam.holds_number(key)) << key;
   for (const char* key : {"mode", "trimmed", "sizes", "oven", "absent"})
     EXPECT_FALSE(beam.holds_number(key)) << key;
+}
+
+TEST_F(Table, CollectsNumbersWithTheirRanges) {
+  std::vector<NumberRead> numbers;
+  document.collect_numbers(&numbers);
+  beam.number("length_m", positive());
+  beam.integer("count", 0, 20);
+  beam.numbers("offset_m", 4, between(-1, 10));
+  beam.flag("trimmed");
+  document.collect_numbers(nullptr);
+  beam.number("tip");
+  ASSERT_EQ(numbers.size(), 6U);
+  EXPECT_EQ(numbers[0].key, "beam.length_m");
+  EXPECT_EQ(numbers[0].value, 0.04);
+  EXPECT_TRUE(numbers[0].range.low_open);
+  EXPECT_FALSE(numbers[0].whole);
+  EXPECT_EQ(numbers[1].key, "beam.count");
+  EXPECT_TRUE(numbers[1].whole);
+  EXPECT_EQ(numbers[1].range.high, 20);
+  EXPECT_EQ(numbers[5].key, "beam.offset_m[3]");
+  EXPECT_EQ(numbers[5].range.low, -1);
 }
 
 TEST_F(Table, ReadsEveryKindOfValue) {
