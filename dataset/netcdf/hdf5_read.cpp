@@ -66,6 +66,15 @@ void check_link(hid_t file, const std::string& name, const char* kind) {
         "{} is a link to another place; expected the {} itself", name, kind));
 }
 
+/// Throws for a variable of several names, which would be read once for each.
+void check_single_name(hid_t variable, const std::string& name) {
+  H5O_info_t object{};
+  check_hdf5(H5Oget_info2(variable, &object, H5O_INFO_BASIC), "open " + name);
+  if (object.rc > 1)
+    throw Hdf5Error(fmt::format("{} is a variable of {} names; expected one",
+                                name, object.rc));
+}
+
 /// Whether `type` is an IEEE number or an integer of `expected` as processors
 /// have them: HDF5 converts any other kind by rules that the file makes.
 bool is_plain(hid_t type, H5T_class_t expected) {
@@ -118,6 +127,7 @@ H5Id open_variable(hid_t file, const std::string& name) {
   const hid_t opened = H5Dopen2(file, name.c_str(), H5P_DEFAULT);
   if (opened < 0 && take_met_global_heap()) reject_view(name);
   H5Id variable(opened, H5Dclose, "open " + name);
+  check_single_name(variable, name);
   {  // nccopy gives such texts fill values, which no property can be read with
     const H5Id type(H5Dget_type(variable), H5Tclose, "open " + name);
     if (is_variable_text(type)) reject_variable_text("/" + name);

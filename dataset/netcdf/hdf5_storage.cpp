@@ -247,8 +247,13 @@ void check_storage(hid_t variable, const std::string& name) {
 }
 
 std::uint64_t room_for_values(hid_t file) {
-  constexpr std::uint64_t kInflated = 400, kAlways = 64u << 20;
-  return kAlways + kInflated * size_of_file(file);
+  // A small file may be a bomb. A large one may be a run without noise, which
+  // deflates well.
+  constexpr std::uint64_t kAlways = 64u << 20, kSmall = 1u << 20;
+  constexpr std::uint64_t kOfSmall = 64, kOfLarge = 400;
+  const std::uint64_t size = size_of_file(file);
+  const std::uint64_t small = std::min(size, kSmall);
+  return kAlways + kOfSmall * small + kOfLarge * (size - small);
 }
 
 }  // namespace beamgyro::internal

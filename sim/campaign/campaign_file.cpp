@@ -9,15 +9,12 @@
 #include <span>
 #include <stdexcept>
 
-#include "config/file_error.h"
 #include "config/option_message.h"
-#include "dataset/files/text_file.h"
 #include "dataset/set/manifest.h"
 #include "sim/campaign/campaign.h"
+#include "sim/campaign/campaign_files.h"
 #include "sim/campaign/draw_plan_file.h"
 #include "sim/campaign/spurious_population_file.h"
-#include "sim/device/device_file.h"
-#include "sim/scenario/scenario_file.h"
 
 namespace beamgyro::internal {
 namespace {
@@ -35,21 +32,20 @@ class CampaignReader {
                  std::optional<std::uint64_t> seed)
       : document_(ConfigDocument::read(file)),
         root_(document_.root()),
-        folder_(file.parent_path()),
+        files_(document_, {}),
         devices_(devices),
         seed_(seed) {}
 
   /// Reads copies of every file and nothing else.
   CampaignReader(std::span<const SourceText> copies,
                  std::optional<long> devices)
-      : copies_(copies),
-        document_(document_of(copies.front())),
+      : document_(ConfigDocument::parse(copies.front().text,
+                                        copies.front().path.string())),
         root_(document_.root()),
-        folder_(copies.front().path.parent_path()),
+        files_(document_, copies),
         devices_(devices) {}
 
   CampaignPlan read() {
-    add_source(document_);
     taken_.insert(stream_number(kSplitStream));
     read_head();
     read_split();
@@ -61,6 +57,8 @@ class CampaignReader {
     read_output();
     read_sampling();
     document_.reject_unknown_keys();
+    plan_.sources = files_.sources();
+    plan_.profiles = files_.profiles();
     return std::move(plan_);
   }
 
@@ -109,36 +107,22 @@ class CampaignReader {
                    trims.flag_or("scale_factor", true)};
   }
 
-  static ConfigDocument document_of(const SourceText& copy) {
-    return ConfigDocument::parse(copy.text, copy.path.string());
-  }
-
-  ConfigDocument read_named(const ConfigTable& table, const char* key) const {
-    const std::filesystem::path path = folder_ / table.text(key);
-    if (!copies_.empty()) return document_of(copy_of(path, copies_));
-    if (!std::filesystem::is_regular_file(status_of(path)))
-      table.fail(key, fmt::format("there is no file {}; expected one, named "
-                                  "relative to the campaign",
-                                  path.string()));
-    return ConfigDocument::read(path);
-  }
-
   void read_device_file() {
-    plan_.device_document = read_named(root_, "device");
-    const ConfigDocument& document = *plan_.device_document;
-    plan_.base_device = read_device(document);
+    const ConfigDocument& document = files_.named(root_, "device");
+    plan_.device_document = document;
+    plan_.base_device = files_.device(document, root_);
     document.reject_unknown_keys();
-    add_source(document);
     const Trims& trims = plan_.trims;
     if (!trims.quadrature || !trims.offset || !trims.scale_factor)
       plan_.base_gyro = make_gyro(plan_.base_device);
   }
 
   void read_tolerances() {
-    const DrawnFile file{*plan_.device_document,
-                         [](const ConfigDocument& d) { read_device(d); }};
-    DrawPlan& plan = plan_.device_plan;
     const ConfigTable tolerances = root_.table_or_empty("tolerances");
+    const DrawnFile file{*plan_.device_document, [&](const ConfigDocument& d) {
+                           files_.device(d, tolerances);
+                         }};
+    DrawPlan& plan = plan_.device_plan;
     for (const std::string& key : tolerances.keys()) {
       reject_untrimmed(tolerances, key);
       add_draw(read_draw(tolerances, key, key, file), "", plan, taken_);
@@ -173,9 +157,13 @@ class CampaignReader {
   }
 
   std::vector<ConfigTable> require_runs() {
+    constexpr std::size_t kMostRuns = 1000;
     std::vector<ConfigTable> runs = root_.tables("run");
     if (runs.empty())
       root_.fail("run", "missing; expected at least one [[run]]");
+    if (runs.size() > kMostRuns)
+      root_.fail("run", fmt::format("{} runs; expected at most {}", runs.size(),
+                                    kMostRuns));
     return runs;
   }
 
@@ -212,21 +200,20 @@ class CampaignReader {
 
   void read_run(const ConfigTable& run) {
     const std::string name = read_run_name(run);
-    const ConfigDocument document = read_named(run, "scenario");
-    add_source(document);
-    ScenarioPlan scenario = scenario_of(document);
+    const ConfigDocument& document = files_.named(run, "scenario");
+    ScenarioPlan scenario = files_.scenario(document, run);
     document.reject_unknown_keys();
     scenario.seed = plan_.source.seed;
     DrawPlan plan = read_variations(run, name, document);
     const PerAxis<bool> moved =
-        moved_axes(scenario, document, plan, plan_.profiles);
+        moved_axes(scenario, document, plan, files_.profiles());
     plan_.runs.push_back({name, document, scenario, std::move(plan), moved});
   }
 
   DrawPlan read_variations(const ConfigTable& run, const std::string& name,
                            const ConfigDocument& document) {
-    const DrawnFile file{document,
-                         [this](const ConfigDocument& d) { scenario_of(d); }};
+    const DrawnFile file{
+        document, [&](const ConfigDocument& d) { files_.scenario(d, run); }};
     DrawPlan plan;
     const ConfigTable vary = run.table_or_empty("vary");
     for (const std::string& key : vary.keys()) {
@@ -310,44 +297,9 @@ class CampaignReader {
     }
   }
 
-  void add_source(const ConfigDocument& document) {
-    if (is_new(document.path()))
-      plan_.sources.push_back({document.path(), document.text()});
-  }
-
-  // An error in a profile names its place in the scenario, unless there are
-  // only copies to read.
-  ScenarioPlan scenario_of(const ConfigDocument& document) {
-    if (!copies_.empty()) add_profiles(document);
-    ScenarioPlan scenario =
-        read_scenario(document, copies_.empty() ? nullptr : &plan_.profiles);
-    if (copies_.empty()) add_profiles(document);
-    return scenario;
-  }
-
-  void add_profiles(const ConfigDocument& document) {
-    for (const std::filesystem::path& file : profile_files(document)) {
-      const SourceText source = copies_.empty()
-                                    ? SourceText{file, read_text_file(file)}
-                                    : copy_of(file, copies_);
-      plan_.profiles.try_emplace(file.lexically_normal(),
-                                 parse_csv(source.text, file.filename()));
-      if (is_new(source.path)) plan_.sources.push_back(source);
-    }
-  }
-
-  bool is_new(const std::filesystem::path& path) const {
-    return std::none_of(plan_.sources.begin(), plan_.sources.end(),
-                        [&](const SourceText& source) {
-                          return source.path.lexically_normal() ==
-                                 path.lexically_normal();
-                        });
-  }
-
-  std::span<const SourceText> copies_;  // none: files are read where they are
   ConfigDocument document_;
   const ConfigTable& root_;
-  std::filesystem::path folder_;
+  CampaignFiles files_;
   std::optional<long> devices_;
   std::optional<std::uint64_t> seed_;
   std::set<std::uint32_t> taken_;  // random streams

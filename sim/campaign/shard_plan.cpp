@@ -155,7 +155,6 @@ ShardPlan::ShardPlan(const CampaignPlan& campaign,
   for (std::size_t r = 0; r < campaign.runs.size(); ++r) {
     const ScenarioPlan& scenario = campaign.runs[r].scenario;
     ShardHead head;
-    head.time = sample_times(scenario);
     head.slow_step = slow_step(campaign, scenario);
     columns_.emplace_back();
     for (const Column& column : columns_of(campaign, r)) {
@@ -165,18 +164,12 @@ ShardPlan::ShardPlan(const CampaignPlan& campaign,
           std::ranges::find(wanted, column.name) != wanted.end())
         head.variables.push_back(set_variable(campaign, column));
     }
-    head.parameters = campaign.device_plan.parameters;
-    std::ranges::copy(campaign.runs[r].plan.parameters,
-                      std::back_inserter(head.parameters));
     head.compress = campaign.output.compress;
     head.run = campaign.runs[r].name;
     head.fidelity = fidelity_name(scenario.fidelity);
     head.program_version = program.version;
     head.git_revision = program.git_revision;
     head.seed = campaign.source.seed;
-    head.campaign_text = campaign.text;
-    head.scenario_text = campaign.runs[r].document.text();
-    head.device_text = campaign.device_document->text();
     heads_.push_back(std::move(head));
   }
   manifest_head_ = {
@@ -214,9 +207,16 @@ bool ShardPlan::has_column(std::uint32_t run, const std::string& name) const {
 
 ShardHead ShardPlan::head_of(std::uint32_t file) const {
   const ManifestEntry entry = expected_entry(manifest_head_, file);
+  const CampaignRun& run = campaign_->runs[run_of(file)];
   ShardHead head = heads_[run_of(file)];
   head.first_device = entry.first_device;
   head.devices = entry.devices;
+  head.time = sample_times(run.scenario);
+  head.parameters = campaign_->device_plan.parameters;
+  std::ranges::copy(run.plan.parameters, std::back_inserter(head.parameters));
+  head.campaign_text = campaign_->text;
+  head.scenario_text = run.document.text();
+  head.device_text = campaign_->device_document->text();
   return head;
 }
 
@@ -237,8 +237,10 @@ double ShardPlan::run_duration() const {
 
 double ShardPlan::largest_file() const {
   double largest = 0;
-  for (const ShardHead& head : heads_) {
-    const auto samples = static_cast<double>(head.time.size());
+  for (std::size_t r = 0; r < heads_.size(); ++r) {
+    const ShardHead& head = heads_[r];
+    const auto samples =
+        static_cast<double>(sample_count(campaign_->runs[r].scenario));
     double bytes = samples;  // status
     for (const SetVariable& variable : head.variables)
       bytes += static_cast<double>(width_of(variable.storage)) * samples /

@@ -47,7 +47,9 @@ class ShardPlan {
  private:
   const CampaignPlan* campaign_;
   ManifestHead manifest_head_;
-  std::vector<ShardHead> heads_;                   // one per run, for range 0
+  // One per run, without what a file alone needs: devices, times, parameters
+  // and texts, which would take memory for every run.
+  std::vector<ShardHead> heads_;
   std::vector<std::vector<std::string>> columns_;  // names, one list per run
 };
 

@@ -9,6 +9,7 @@ import functools
 import hashlib
 import itertools
 import json
+import random
 import shutil
 import struct
 import zlib
@@ -147,6 +148,9 @@ class Recordings:
         with self.opened("same_variable.h5") as file:
             for k in range(2000):
                 file[f"x{k}"] = file["rate"]
+        self.lengthened("same_long_variable.h5", 8000, 4000)
+        self.lengthened("long_variables.h5", 130_000, 0, 100)
+        self.lengthened("long.h5", 2_600_000)
         with self.opened("attributes.h5") as file:
             for k in range(5):
                 file["rate"].attrs[f"x{k}"] = np.zeros(60_000, np.uint8)
@@ -155,6 +159,36 @@ class Recordings:
         with self.opened("texts.h5") as file:
             del file["meta/scenario"]
             file["meta/scenario"] = "x" * 100_000  # of variable length
+
+    def lengthened(self, name, samples, names=0, variables=0):
+        """Constants over so many samples, with so many more names for the rate
+        and so many more variables; rate, temperature and true rate alone."""
+        with self.opened(name) as file:
+            kept = ("time", "status", "rate", "temperature", "true_rate")
+            for variable in set(file) - {"meta"}:
+                old = file[variable]
+                said = {key: old.attrs[key]
+                        for key in ("units", "long_name", "role")}
+                values = (np.arange(samples) / 10. if variable == "time" else
+                          np.full(samples, old[0]))
+                del file[variable]
+                if variable in kept:
+                    self.constant(file, variable, values, said)
+                if variable == "rate":
+                    for k in range(variables):
+                        self.constant(file, f"x{k}", values, said)
+            for k in range(names):
+                file[f"x{k}"] = file["rate"]
+            file["meta/padding"] = np.frombuffer(
+                random.Random(1).randbytes(200_000), np.uint8)
+
+    @staticmethod
+    def constant(file, name, values, said):
+        made = file.create_dataset(
+            name, data=values, chunks=(min(len(values), 1 << 19),),
+            compression="gzip", compression_opts=9, shuffle=True)
+        for key, text in said.items():
+            made.attrs[key] = text
 
     def driver_information(self, name):
         """A superblock of version 0 that names a block of 4 GiB."""
@@ -246,6 +280,13 @@ def toml_files(folder):
                  for line in text.splitlines()]
         return "\n".join(lines) + "\n"
 
+    head = campaign[:campaign.index("[tolerances]")]
+
+    def runs(count, more="", scenario="rest.toml"):
+        return head + "".join(
+            f'[[run]]\nname = "r{k}"\nscenario = "{scenario}"\n{more}'
+            for k in range(count))
+
     for name, text in {
             "deep": "x = " + "[" * 900_000,
             "tables": "x = " + "{a=" * 250_000,
@@ -260,6 +301,16 @@ def toml_files(folder):
             "points": scenario.replace(
                 "points = [[0, 0], [60, 10]]", "points = [" + ",".join(
                     f"[{k},{k % 9}]" for k in range(70_000)) + "]"),
+            "runs": runs(15_000),
+            "varied_runs": runs(8_000, "ambient_offset_K = "
+                                "{uniform = {low = -5, high = 5}}\n"),
+            "long_runs": runs(30, scenario="toml_points.toml"),
+            "choices": head + '[tolerances]\n"patches.offset_m" = {discrete = '
+                       "{values = [" + ",".join(["1e-6"] * 180_000) + "]}}\n"
+                       + runs(1).removeprefix(head),
+            "varied": runs(1, "[run.vary]\n" '"ambient.constant_degC" = '
+                           "{discrete = {values = ["
+                           + "1,2,3,4,5,6,7," * 43_000 + "]}}\n"),
             "devices": one_line("devices", "1_000_000_000_000", campaign),
             "per_file": one_line("devices_per_file", "1_000_000_000_000",
                                  campaign)}.items():

@@ -32,7 +32,7 @@ DOORS = {
              "plan FILE --soaks 2"],
     "toml": ["run FILE -o out.h5", "run ramp.toml --device FILE -o out.h5",
              "characterise FILE -o out.csv", "generate FILE -o out",
-             "sensitivity FILE --samples 16",
+             "sensitivity FILE --samples 32",
              "train run.h5 --model FILE -o out.json",
              "validate c.json run.h5 --spec FILE",
              "validate c.json --device device.toml --qualification FILE",

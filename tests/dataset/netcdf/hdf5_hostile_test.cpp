@@ -95,6 +95,13 @@ TEST_F(HostileHdf5, LinksAreNotFollowed) {
             "itself");
 }
 
+TEST_F(HostileHdf5, AVariableOfSeveralNamesIsNotRead) {
+  EXPECT_EQ(rejected([](hid_t id) {
+              H5Lcreate_hard(id, "rate", id, "again", H5P_DEFAULT, H5P_DEFAULT);
+            }),
+            "rate is a variable of 2 names; expected one");
+}
+
 TEST_F(HostileHdf5, AMetaThatIsALinkIsNotFollowed) {
   const fs::path other = directory / "other.h5";
   fs::copy_file(file, other);

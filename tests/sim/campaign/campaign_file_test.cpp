@@ -80,6 +80,40 @@ TEST(CampaignFile, DevicesOfTheCommandReplaceThoseOfTheFile) {
             "devices = 0: out of range"));
 }
 
+std::string runs(int count) {
+  std::string text;
+  for (int k = 1; k < count; ++k)
+    text += "[[run]]\nname = \"r" + std::to_string(k) +
+            "\"\nscenario = \"rest.toml\"\n";
+  return text;
+}
+
+TEST(CampaignFile, RunsAreBounded) {
+  const CampaignFolder folder;
+  EXPECT_EQ(folder.campaign(campaign_text("", "", runs(1000))).runs.size(),
+            1000u);
+  EXPECT_TRUE(holds(
+      rejection([&] { folder.campaign(campaign_text("", "", runs(1001))); }),
+      "run: 1001 runs; expected at most 1000"));
+}
+
+// A text of 9 MB is read for the run, for the medians of its draws, and then
+// for each choice.
+TEST(CampaignFile, WhatDrawsHaveReadIsBounded) {
+  const CampaignFolder folder;
+  folder.write_rest("[ambient]\nconstant_degC = 25\n#" +
+                    std::string(9'000'000, ' ') + "\n");
+  const auto choices = [&](const char* values) {
+    return campaign_text("", "",
+                         "ambient_offset_K = { discrete = { values = " +
+                             std::string(values) + " } }\n");
+  };
+  EXPECT_EQ(folder.campaign(choices("[1]")).runs.size(), 1u);
+  EXPECT_TRUE(holds(rejection([&] { folder.campaign(choices("[1, 2]")); }),
+                    "c.toml:7:1: device and scenarios together have more than "
+                    "32 MiB"));
+}
+
 struct BadCase {
   std::string text, message;  // a part of it
 };
