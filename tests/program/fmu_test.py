@@ -4,7 +4,6 @@
 import ctypes
 import hashlib
 import importlib.util
-import re
 import unittest
 import xml.etree.ElementTree as xml
 import zipfile
@@ -212,13 +211,11 @@ class Fmu(ProgramTest):
             self.assertEqual(len(result), 11)
 
     def test_what_is_wrong_is_said(self):
-        for words, expected in [
-                (["-o", "gyro.zip"], r"gyro\.zip.*\.fmu"),
-                (["-o", "gyro.fmu", "--fmi", "1"], r"--fmi 1.*2.*3"),
+        for words, says in [
+                (["-o", "gyro.zip"], ["gyro.zip", ".fmu"]),
+                (["-o", "gyro.fmu", "--fmi", "1"], ["--fmi 1", "2", "3"]),
                 (["-o", "gyro.fmu", "--set", "beam.length=1"],
-                 r"--set beam\.length=1.*length_m"),
+                 ["--set beam.length=1", "length_m"]),
                 (["-o", "gyro.fmu", "--set", "beam.length_m=40"],
-                 r"beam\.length_m: 40 is out of range")]:
-            answer = self.ended("fmu", NOMINAL, *words, status=2)
-            self.assertTrue(re.search(expected, answer.stderr), answer.stderr)
-            self.assertFalse((self.dir / "gyro.fmu").exists())
+                 ["beam.length_m: 40 is out of range"])]:
+            self.rejected("fmu", NOMINAL, *words, says=says)
