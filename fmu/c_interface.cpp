@@ -58,10 +58,10 @@ void FmuComponent::serialise(const void* state, void* bytes, std::size_t size) {
   std::memcpy(bytes, written.data(), size);
 }
 
-FmuComponent* made_component(const char* name, const char* token,
-                             FmiVersion version,
-                             const std::function<std::string()>& resources,
-                             std::function<void(const char*)> log) noexcept {
+FmuComponent* made_component(
+    const char* name, const char* token, FmiVersion version,
+    const std::function<std::string()>& resources,
+    const std::function<void(const char*)>& log) noexcept {
   try {
     if (name == nullptr || *name == '\0')
       throw std::invalid_argument("the instance has no name; expected one");

@@ -37,10 +37,10 @@ struct FmuComponent {
 
 /// Returns the instance of a call of the C interface, or a null pointer after a
 /// message. No exception leaves it.
-FmuComponent* made_component(const char* name, const char* token,
-                             FmiVersion version,
-                             const std::function<std::string()>& resources,
-                             std::function<void(const char*)> log) noexcept;
+FmuComponent* made_component(
+    const char* name, const char* token, FmiVersion version,
+    const std::function<std::string()>& resources,
+    const std::function<void(const char*)>& log) noexcept;
 
 /// Does the work of a call of the C interface. No exception leaves it: its text
 /// goes to the log of the component, the answer is kFmiError.

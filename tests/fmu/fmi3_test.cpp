@@ -25,7 +25,9 @@ void log3(void* environment, int /*status*/, const char* /*category*/,
 class Fmi3 : public ::testing::Test {
  protected:
   Fmi3() : fmu_("lifelike", FmiVersion::k3) { component_ = made(false, 0); }
-  ~Fmi3() override { binary().call<void>("fmi3FreeInstance", component_); }
+  void TearDown() override {
+    binary().call<void>("fmi3FreeInstance", component_);
+  }
 
   void* made(bool event_mode, std::size_t intermediate) {
     return binary().call<void*>(

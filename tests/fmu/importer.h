@@ -8,6 +8,8 @@
 #include <cstdarg>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -143,7 +145,13 @@ class Instance2 {
         static_cast<const Callbacks2*>(&callbacks_), 0, 0);
     if (component == nullptr) throw std::runtime_error(messages.at(0));
   }
-  ~Instance2() { binary().call<void>("fmi2FreeInstance", component); }
+  ~Instance2() {
+    try {
+      binary().call<void>("fmi2FreeInstance", component);
+    } catch (const std::exception&) {  // the binary has no such function
+      std::abort();
+    }
+  }
   Instance2(const Instance2&) = delete;
   Instance2& operator=(const Instance2&) = delete;
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <limits>
 #include <stdexcept>
@@ -21,7 +20,8 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-GyroStepper stepper_of(const std::string& device, StepperStart start = {},
+GyroStepper stepper_of(const std::string& device,
+                       const StepperStart& start = {},
                        const std::vector<std::string>& overrides = {}) {
   return {stepper_model(make_gyro(shipped_device(device, overrides))), start};
 }
@@ -40,8 +40,7 @@ StepInputs course(double t) {
 }
 
 bool same_bits(const StepSample& a, const StepSample& b) {
-  return std::memcmp(&a.true_node_temperature, &b.true_node_temperature,
-                     sizeof a.true_node_temperature) == 0 &&
+  return a.true_node_temperature == b.true_node_temperature &&
          a.time == b.time && a.rate == b.rate && a.output == b.output &&
          a.temperature == b.temperature &&
          a.drive_frequency == b.drive_frequency &&
