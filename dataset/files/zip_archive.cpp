@@ -80,7 +80,10 @@ std::string zip_archive(const std::vector<ZipEntry>& entries) {
     put_four(directory, 0);  // external attributes
     put_four(directory, archive.size());
     directory += entry.name;
-    archive += "PK\3\4" + fields + entry.name + stored;
+    archive += "PK\3\4";
+    archive += fields;
+    archive += entry.name;
+    archive += stored;
   }
   std::string end = "PK\5\6";
   put_four(end, 0);  // disks

@@ -101,8 +101,9 @@ TEST(CampaignFile, RunsAreBounded) {
 // for each choice.
 TEST(CampaignFile, WhatDrawsHaveReadIsBounded) {
   const CampaignFolder folder;
-  folder.write_rest("[ambient]\nconstant_degC = 25\n#" +
-                    std::string(9'000'000, ' ') + "\n");
+  std::string blanks;
+  blanks.resize(9'000'000, ' ');
+  folder.write_rest("[ambient]\nconstant_degC = 25\n#" + blanks + "\n");
   const auto choices = [&](const char* values) {
     return campaign_text("", "",
                          "ambient_offset_K = { discrete = { values = " +
