@@ -336,10 +336,8 @@ void add_live(CommandLine& program) {
       {"--set", "KEY=VALUE", "Replaces a key of the device; may be repeated",
        "the file as it is"},
       arguments.overrides);
-  command.example(
-      "my_vehicle | beamgyro live scenarios/devices/nominal.toml | beamgyro "
-      "compensate cubic.json --stream",
-      "A gyro and its compensation behind a simulation");
+  command.example("beamgyro live scenarios/devices/nominal.toml --seed 1",
+                  "Between the output of a simulation and its input");
 }
 
 }  // namespace beamgyro::internal
