@@ -49,6 +49,8 @@ FmuVariable described(FmuVariable variable) {
         is_status ? "1 unpowered, 2 output saturated, 4 loop not locked, added"
                   : signal->long_name;
   }
+  // Per unit of rate, where a reader would divide twice.
+  if (variable.unit == "V/degree/s") variable.unit = "V/(degree/s)";
   if (variable.unit == "1") variable.unit.clear();
   return variable;
 }

@@ -14,8 +14,8 @@
 
 namespace beamgyro::internal {
 
-/// The states of answers that both versions of FMI have under these numbers.
-inline constexpr int kFmiOk = 0, kFmiWarning = 1, kFmiError = 3;
+/// The answers that both versions of FMI have under these numbers.
+inline constexpr int kFmiOk = 0, kFmiError = 3;
 inline constexpr const char* kErrorCategory = "logStatusError";
 
 /// What a master holds by a pointer: an instance, the states that it took from

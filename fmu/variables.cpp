@@ -2,6 +2,7 @@
 #include "fmu/variables.h"
 
 #include <iterator>
+#include <limits>
 
 #include "include/beamgyro/recording.h"
 

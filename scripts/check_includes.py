@@ -64,7 +64,7 @@ MAY_INCLUDE = {
     "python": {"include", "api", "dataset/recording", "dataset/netcdf",
                "compensation/inputs", "compensation/rows",
                "validation/external"},
-    "bench": {*ALL, *VALIDATION, *SENSITIVITY, "planning", "report"},
+    "bench": {*ALL, *VALIDATION, *SENSITIVITY, "planning", "report", "fmu"},
     "fuzz": set(ALL),  # of tests/ only
     # of tests/ only
     "agreement": {*ALL, *VALIDATION, *SENSITIVITY, "planning"},

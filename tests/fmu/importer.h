@@ -37,9 +37,14 @@ class FmuBinary {
   bool has(const std::string& name) const {
     return dlsym(handle_, name.c_str()) != nullptr;
   }
-  /// Calls a function with arguments of exactly the types of the standard.
+  /// Calls a function with arguments as wide as those of the standard. The
+  /// sanitizer would want the very types of the binary's own source.
   template <class Answer = int, class... Arguments>
-  Answer call(const char* name, Arguments... arguments) const {
+#ifdef __clang__
+  __attribute__((no_sanitize("function")))
+#endif
+  Answer
+  call(const char* name, Arguments... arguments) const {
     void* const function = dlsym(handle_, name);
     if (function == nullptr) throw std::runtime_error(dlerror());
     return reinterpret_cast<Answer (*)(Arguments...)>(function)(arguments...);
