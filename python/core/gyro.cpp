@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "dataset/recording/signals.h"
 #include "python/core/bindings.h"
 #include "python/core/long_call.h"
 
@@ -191,24 +192,40 @@ py::dict step_each(const std::vector<Gyro*>& gyros, double dt,
 }  // namespace
 
 void bind_gyro(py::module_& core) {
-  py::class_<Shown> sample(core, "Sample");
+  py::class_<Shown> sample(core, "Sample",
+                           "What a gyro shows at one moment, under the names "
+                           "and in the units of a recording.");
   sample
-      .def_property_readonly("time",
-                             [](const Shown& s) { return s.sample.time; })
-      .def_property_readonly("status",
-                             [](const Shown& s) { return s.sample.status; })
-      .def_property_readonly("truth", [](const Shown& s) { return s.truth; });
-  py::class_<GyroTruth> truth(core, "Truth");
-  for (const GyroSignal& signal : gyro_signals())
+      .def_property_readonly(
+          "time", [](const Shown& s) { return s.sample.time; },
+          "Time since the start [s].")
+      .def_property_readonly(
+          "status", [](const Shown& s) { return s.sample.status; },
+          "Bits of the status, as in recordings.")
+      .def_property_readonly(
+          "truth", [](const Shown& s) { return s.truth; },
+          "The truth at the same moment, which no gyro shows.");
+  py::class_<GyroTruth> truth(core, "Truth",
+                              "The truth at the moment of a sample, which no "
+                              "gyro shows.");
+  for (const GyroSignal& signal : gyro_signals()) {
+    const internal::RecordedSignal& about =
+        internal::recorded_signal(signal.name);
+    const std::string text =
+        fmt::format("The {} [{}].", about.long_name, about.units);
     if (signal.measured != nullptr)
-      sample.def_property_readonly(signal.name,
-                                   [member = signal.measured](const Shown& s) {
-                                     return s.sample.*member;
-                                   });
+      sample.def_property_readonly(
+          signal.name,
+          [member = signal.measured](const Shown& s) {
+            return s.sample.*member;
+          },
+          text.c_str());
     else
       truth.def_property_readonly(
           signal.name,
-          [member = signal.truth](const GyroTruth& t) { return t.*member; });
+          [member = signal.truth](const GyroTruth& t) { return t.*member; },
+          text.c_str());
+  }
   py::class_<Gyro>(core, "Gyro")
       .def_static("start", &start_gyro)
       .def("now", &now)

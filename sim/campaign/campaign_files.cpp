@@ -25,8 +25,10 @@ const ConfigDocument& CampaignFiles::named(const ConfigTable& table,
   if (known != documents_.end()) return known->second;
   const std::filesystem::path path = folder_ / name;
   const auto read = [&] {
-    if (!copies_.empty())
-      return ConfigDocument::parse(copy_of(path, copies_).text, path.string());
+    if (!copies_.empty()) {
+      const SourceText& copy = copy_of(path, copies_);
+      return ConfigDocument::parse(copy.text, copy.path.string());
+    }
     if (!std::filesystem::is_regular_file(status_of(path)))
       table.fail(key, fmt::format("there is no file {}; expected one, named "
                                   "relative to the campaign",
