@@ -250,7 +250,7 @@ void check_storage(hid_t variable, const std::string& name) {
 std::uint64_t room_for_values(hid_t file) {
   // A small file may be a bomb. A large one may be a run without noise, which
   // deflates well.
-  constexpr std::uint64_t kAlways = 64u << 20, kSmall = 4u << 20;
+  constexpr std::uint64_t kAlways = 32u << 20, kSmall = 4u << 20;
   constexpr std::uint64_t kOfSmall = 64, kOfLarge = 400;
   const std::uint64_t size = size_of_file(file);
   const std::uint64_t small = std::min(size, kSmall);

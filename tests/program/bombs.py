@@ -180,7 +180,7 @@ class Recordings:
             for k in range(names):
                 file[f"x{k}"] = file["rate"]
             file["meta/padding"] = np.frombuffer(
-                random.Random(1).randbytes(200_000), np.uint8)
+                random.Random(1).randbytes(190_000), np.uint8)
 
     @staticmethod
     def constant(file, name, values, said):
