@@ -10,8 +10,24 @@
 #include "dataset/files/atomic_file.h"
 #include "dataset/files/text_file.h"
 #include "dataset/files/zip_archive.h"
+#include "sim/stepper/gyro_stepper.h"
 
 namespace beamgyro {
+namespace {
+
+// What cannot be stepped is refused here, not by a master.
+void require_steps(const Device& device, const internal::PackedDevice& packed) {
+  try {
+    static_cast<void>(internal::GyroStepper(
+        internal::stepper_model(internal::make_gyro(packed.parameters())),
+        {.fidelity = packed.fidelity()}));
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(
+        fmt::format("{}: {}", device.name(), error.what()));
+  }
+}
+
+}  // namespace
 
 std::string fmu_of(const Device& device, const FmuOptions& options) {
   if (options.fmi != 2 && options.fmi != 3)
@@ -20,7 +36,9 @@ std::string fmu_of(const Device& device, const FmuOptions& options) {
   const internal::FmiVersion version{options.fmi};
   const std::string overrides =
       fmt::format("{}", fmt::join(device.overrides(), "\n"));
-  const internal::PackedDevice packed(device.text(), overrides);
+  const internal::PackedDevice packed(device.text(), overrides,
+                                      options.fidelity);
+  require_steps(device, packed);
   const std::string name = std::filesystem::path(device.name()).stem().string();
   const char* const platform =
       version == internal::FmiVersion::k2 ? "linux64" : "x86_64-linux";
@@ -30,7 +48,9 @@ std::string fmu_of(const Device& device, const FmuOptions& options) {
        {fmt::format("binaries/{}/{}.so", platform, internal::kFmuIdentifier),
         internal::read_text_file(options.binary)},
        {fmt::format("resources/{}", internal::kPackedDevice), device.text()},
-       {fmt::format("resources/{}", internal::kPackedOverrides), overrides}});
+       {fmt::format("resources/{}", internal::kPackedOverrides), overrides},
+       {fmt::format("resources/{}", internal::kPackedFidelity),
+        options.fidelity}});
 }
 
 void write_fmu(const Device& device, const std::filesystem::path& file,

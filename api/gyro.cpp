@@ -51,14 +51,7 @@ std::optional<internal::PiecewiseLinear> history_of(const GyroStart& start) {
 
 internal::StepperStart si_start(const GyroStart& start) {
   internal::StepperStart si;
-  if (start.fidelity == "envelope") {
-    si.fidelity = internal::StepFidelity::kEnvelope;
-  } else if (start.fidelity != "quasistatic") {
-    throw std::invalid_argument(
-        fmt::format("fidelity is \"{}\"; expected \"quasistatic\" or "
-                    "\"envelope\", in which a gyro can be stepped",
-                    start.fidelity));
-  }
+  si.fidelity = internal::step_fidelity(start.fidelity);
   si.seed = start.seed;
   si.noise = start.noise;
   si.noise_rate = start.noise_rate_Hz;

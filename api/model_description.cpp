@@ -195,7 +195,10 @@ std::string model_description(const PackedDevice& device, FmiVersion version,
       is_2 ? "2.0" : "3.0", attribute("modelName", name),
       attribute(is_2 ? "guid" : "instantiationToken", device.token()),
       attribute("description",
-                "vibrating-beam piezo gyro, quasi-static fidelity"),
+                fmt::format("vibrating-beam piezo gyro, {} fidelity",
+                            device.fidelity() == StepFidelity::kEnvelope
+                                ? "envelope"
+                                : "quasi-static")),
       attribute("version", kProgramVersion),
       attribute("generationTool", std::string("beamgyro ") + kProgramVersion),
       attribute("variableNamingConvention", "structured"));

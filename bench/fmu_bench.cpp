@@ -31,6 +31,7 @@ void fmu_step(benchmark::State& state, const std::string& device) {
   text << file.rdbuf();
   std::ofstream(folder / kPackedDevice) << text.str();
   std::ofstream(folder / kPackedOverrides) << "";
+  std::ofstream(folder / kPackedFidelity) << "quasistatic";
   const std::string token = PackedDevice(text.str(), "").token();
   void* const gyro =
       function<void*(const char*, const char*, const char*, bool, bool, bool,

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 struct FmuArguments {
   fs::path device, output;
-  std::string fmi = "2";
+  std::string fmi = "2", fidelity = "quasistatic";
   std::vector<std::string> overrides;
 };
 
@@ -39,7 +39,9 @@ int run_fmu(const FmuArguments& arguments) {
   require_output(arguments.output, {arguments.device});
   write_fmu(Device::read(arguments.device, arguments.overrides),
             arguments.output,
-            {.fmi = arguments.fmi == "2" ? 2 : 3, .binary = fmu_binary()});
+            {.fmi = arguments.fmi == "2" ? 2 : 3,
+             .fidelity = arguments.fidelity,
+             .binary = fmu_binary()});
   return 0;
 }
 
@@ -54,6 +56,9 @@ void add_fmu(CommandLine& program) {
   command.text({"-o,--output", "GYRO.fmu", "File to write"}, arguments.output);
   command.choice({"--fmi", "2|3", "Version of the standard FMI", "2"},
                  arguments.fmi, {"2", "3"});
+  command.choice({"--fidelity", "quasistatic|envelope",
+                  "Envelope follows the loops, too", "quasistatic"},
+                 arguments.fidelity, {"quasistatic", "envelope"});
   command.texts(
       {"--set", "KEY=VALUE", "Replaces a key of the device; may be repeated",
        "the file as it is"},

@@ -191,7 +191,8 @@ GyroStepper FmuInstance::stepper_of(const FmuSettings& settings) {
     model_ = stepper_model(make_gyro(device_.with(settings.keys)));
     model_keys_ = settings.keys;
   }
-  StepperStart start{.seed = settings.seed,
+  StepperStart start{.fidelity = device_.fidelity(),
+                     .seed = settings.seed,
                      .noise = settings.noise,
                      .noise_rate = settings.noise_rate,
                      .stirred = settings.stirred,

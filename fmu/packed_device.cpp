@@ -111,9 +111,11 @@ void put_number(const DeviceKey& key, double value, ConfigNode& node) {
 }  // namespace
 
 PackedDevice::PackedDevice(const std::string& text,
-                           const std::string& overrides)
+                           const std::string& overrides,
+                           const std::string& fidelity)
     : document_(document_of(text, overrides)),
-      token_(text_digest(text + '\n' + overrides)) {
+      fidelity_(step_fidelity(fidelity)),
+      token_(text_digest(text + '\n' + overrides + '\n' + fidelity)) {
   std::vector<NumberRead> numbers;
   document_.collect_numbers(&numbers);
   parameters_ = read_device(document_);
@@ -124,7 +126,8 @@ PackedDevice::PackedDevice(const std::string& text,
 
 PackedDevice PackedDevice::read(const std::filesystem::path& resources) {
   return {bytes_of(resources / kPackedDevice),
-          bytes_of(resources / kPackedOverrides)};
+          bytes_of(resources / kPackedOverrides),
+          bytes_of(resources / kPackedFidelity)};
 }
 
 DeviceParameters PackedDevice::with(const std::vector<double>& values) const {

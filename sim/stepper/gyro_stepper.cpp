@@ -89,6 +89,15 @@ Readout readout_of(const ReadoutParameters& readout) {
 
 }  // namespace
 
+StepFidelity step_fidelity(std::string_view name) {
+  if (name == "quasistatic") return StepFidelity::kQuasistatic;
+  if (name == "envelope") return StepFidelity::kEnvelope;
+  throw std::invalid_argument(
+      fmt::format("fidelity is \"{}\"; expected \"quasistatic\" or "
+                  "\"envelope\", in which a gyro can be stepped",
+                  name));
+}
+
 GyroStepper::GyroStepper(std::shared_ptr<const StepperModel> model,
                          const StepperStart& start)
     : model_(std::move(model)),
@@ -205,11 +214,11 @@ const StepSample& GyroStepper::step(double duration, const StepInputs& from,
 
 void GyroStepper::prepare(double duration, const StepInputs& from,
                           const StepInputs& to, bool powered) {
-  if (!(duration > 0 && duration <= kLongestStep))
+  if (!(duration > 0 && duration <= kLongestGyroStep))
     throw std::invalid_argument(
         fmt::format("the duration of a step is {:g} s; expected above 0, at "
                     "most {:g} s",
-                    duration, kLongestStep));
+                    duration, kLongestGyroStep));
   check_inputs(from);
   check_inputs(to);
   next_ = state_;

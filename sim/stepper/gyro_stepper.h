@@ -16,7 +16,7 @@
 
 namespace beamgyro::internal {
 
-inline constexpr double kLongestStep = 1e5;  // [s]
+inline constexpr double kLongestGyroStep = 1e5;  // [s]
 
 /// One gyro that goes on step by step, without knowing what comes later: the
 /// model of simulate_quasistatic() or simulate_envelope(). At the samples of a
@@ -39,9 +39,9 @@ class GyroStepper {
   /// straight lines, with the power on or off; an input whose value before
   /// differs from `from` jumps. Returns the sample at the end, from before any
   /// jump there. Throws std::invalid_argument for a duration that is not above
-  /// 0 or above kLongestStep, and for inputs out of range, SimulationFailure as
-  /// SettledResponse and check_materials(). After an exception everything is as
-  /// it was.
+  /// 0 or above kLongestGyroStep, and for inputs out of range,
+  /// SimulationFailure as SettledResponse and check_materials(). After an
+  /// exception everything is as it was.
   const StepSample& step(double duration, const StepInputs& from,
                          const StepInputs& to, bool powered);
 

@@ -25,6 +25,9 @@ enum class StepFidelity {
   kEnvelope,     // amplitudes and loops over time
 };
 
+/// The fidelity of that name. Throws std::invalid_argument for another one.
+StepFidelity step_fidelity(std::string_view name);
+
 /// How a gyro that is stepped begins, and what stays the same.
 struct StepperStart {
   StepFidelity fidelity = StepFidelity::kQuasistatic;

@@ -52,21 +52,34 @@ StepInputs engine_inputs(int k) {
   return inputs;
 }
 
-class Fmi2 : public ::testing::TestWithParam<const char*> {};
+struct Unit {
+  const char* device;
+  StepFidelity fidelity = StepFidelity::kQuasistatic;
+
+  bool is_envelope() const { return fidelity == StepFidelity::kEnvelope; }
+  UnpackedFmu fmu() const {
+    return {device, FmiVersion::k2, "resources", "",
+            is_envelope() ? "envelope" : "quasistatic"};
+  }
+};
+
+class Fmi2 : public ::testing::TestWithParam<Unit> {};
 
 TEST_P(Fmi2, StepsAsTheEngineToTheLastBit) {
-  const UnpackedFmu fmu(GetParam(), FmiVersion::k2);
+  const UnpackedFmu fmu = GetParam().fmu();
   Instance2 gyro(fmu);
   ASSERT_EQ(gyro.set_integer("seed", -7), kOk);
   ASSERT_EQ(gyro.set_integer("seed_high", 3), kOk);
   ASSERT_EQ(gyro.set("noise_rate", 10), kOk);
   set_inputs(gyro, 0);
   ASSERT_EQ(gyro.start(), kOk);
-  GyroStepper engine(stepper_model(make_gyro(shipped_device(GetParam()))),
-                     {.seed = (std::uint64_t{3} << 32) + 0xfffffff9,
-                      .noise_rate = 10,
-                      .inputs = engine_inputs(0),
-                      .age = 0.0});
+  GyroStepper engine(
+      stepper_model(make_gyro(shipped_device(GetParam().device))),
+      {.fidelity = GetParam().fidelity,
+       .seed = (std::uint64_t{3} << 32) + 0xfffffff9,
+       .noise_rate = 10,
+       .inputs = engine_inputs(0),
+       .age = 0.0});
   expect_same(gyro.signals(), engine_signals(fmu, engine.now()));
   for (int k = 0; k < 100; ++k) {
     set_inputs(gyro, k);
@@ -78,7 +91,7 @@ TEST_P(Fmi2, StepsAsTheEngineToTheLastBit) {
 }
 
 TEST_P(Fmi2, GoesOnWithTheSameBytesFromAnyState) {
-  const UnpackedFmu fmu(GetParam(), FmiVersion::k2);
+  const UnpackedFmu fmu = GetParam().fmu();
   Instance2 gyro(fmu), other(fmu);
   ASSERT_EQ(gyro.start(), kOk);
   std::vector<std::string> states;
@@ -99,10 +112,14 @@ TEST_P(Fmi2, GoesOnWithTheSameBytesFromAnyState) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, Fmi2,
-                         ::testing::Values("nominal", "lifelike",
-                                           "lifelike_with_modes"),
+                         ::testing::Values(Unit{"nominal"}, Unit{"lifelike"},
+                                           Unit{"lifelike_with_modes"},
+                                           Unit{"nominal",
+                                                StepFidelity::kEnvelope}),
                          [](const auto& about) {
-                           return std::string(about.param);
+                           return std::string(about.param.device) +
+                                  (about.param.is_envelope() ? "_envelope"
+                                                             : "");
                          });
 
 TEST(Fmi2Life, InterleavedInstancesDoNotSeeEachOther) {

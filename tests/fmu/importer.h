@@ -64,18 +64,20 @@ class UnpackedFmu {
  public:
   UnpackedFmu(const std::string& device, FmiVersion version,
               const std::string& folder = "resources",
-              const std::string& overrides = "")
+              const std::string& overrides = "",
+              const std::string& fidelity = "quasistatic")
       : folder_(
             std::filesystem::path(::testing::TempDir()) /
             ::testing::UnitTest::GetInstance()->current_test_info()->name() /
             device / folder),
         text_(text_of(std::string(BEAMGYRO_SCENARIOS) + "/devices/" + device +
                       ".toml")),
-        packed_(text_, overrides),
+        packed_(text_, overrides, fidelity),
         variables_(fmu_variables(packed_, version)) {
     std::filesystem::create_directories(folder_);
     std::ofstream(folder_ / kPackedDevice) << text_;
     std::ofstream(folder_ / kPackedOverrides) << overrides;
+    std::ofstream(folder_ / kPackedFidelity) << fidelity;
   }
 
   std::string folder() const { return folder_.string() + "/"; }

@@ -71,7 +71,8 @@ class Fmu(ProgramTest):
             self.assertEqual(self.names, [
                 "modelDescription.xml",
                 f"binaries/{PLATFORM[fmi]}/beamgyro_fmu.so",
-                "resources/device.toml", "resources/overrides.txt"])
+                "resources/device.toml", "resources/overrides.txt",
+                "resources/fidelity.txt"])
             text = (self.dir / "gyro/resources/device.toml").read_bytes()
             changes = b"readout.adc_bits=18\nbeam.length_m=0.041"
             self.assertEqual(text, LIFELIKE.read_bytes())
@@ -80,7 +81,8 @@ class Fmu(ProgramTest):
                 changes)
             token = root.get("guid" if fmi == 2 else "instantiationToken")
             self.assertEqual(
-                token, hashlib.sha256(text + b"\n" + changes).hexdigest())
+                token, hashlib.sha256(text + b"\n" + changes +
+                                      b"\nquasistatic").hexdigest())
             starts = {v["name"]: v.get("start")
                       for v, _ in self.variables(root)}
             self.assertEqual(starts["readout.adc_bits"], "18")
@@ -214,8 +216,19 @@ class Fmu(ProgramTest):
         for words, says in [
                 (["-o", "gyro.zip"], ["gyro.zip", ".fmu"]),
                 (["-o", "gyro.fmu", "--fmi", "1"], ["--fmi 1", "2", "3"]),
+                (["-o", "gyro.fmu", "--fidelity", "carrier"],
+                 ["--fidelity carrier", "quasistatic", "envelope"]),
                 (["-o", "gyro.fmu", "--set", "beam.length=1"],
                  ["--set beam.length=1", "length_m"]),
                 (["-o", "gyro.fmu", "--set", "beam.length_m=40"],
                  ["beam.length_m: 40 is out of range"])]:
             self.rejected("fmu", NOMINAL, *words, says=says)
+        lifelike = NOMINAL.with_name("lifelike.toml")
+        self.rejected("fmu", lifelike, "--fidelity", "envelope", "-o",
+                      "gyro.fmu", says=["lifelike.toml", "envelope"])
+
+    def test_the_fidelity_is_in_the_archive(self):
+        root = self.made(2, NOMINAL, "--fidelity", "envelope")
+        self.assertIn("envelope", root.get("description"))
+        self.assertEqual((self.dir / "gyro/resources/fidelity.txt").read_text(),
+                         "envelope")
