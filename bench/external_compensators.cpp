@@ -71,4 +71,5 @@ int main(int argc, char** argv) {
                1e6 * (processor_seconds(RUSAGE_CHILDREN) - there) / samples,
                answer.faults.empty() ? "" : " " + answer.faults[0].words);
   }
+  return 0;
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Configures and builds one preset: build.sh dev|asan|tsan|fuzz|release [OPTION]...
+# Configures and builds one preset: build.sh dev|asan|tsan|release [OPTION]...
 # An OPTION is given to cmake. Quiet while it goes well; a failure shows what
 # the tools said.
 set -euo pipefail

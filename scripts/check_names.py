@@ -5,8 +5,9 @@
 Libraries are compiled in bundles of sources, which share their anonymous
 namespaces. There a name that another source of the library defines, or that a
 header declares, would silently hide the other. Headers share one namespace:
-two types of one name would be linked as if they were one. Nor may a type of
-the library bear the name of one of the public headers.
+two types of one name would be linked as if they were one, and constants of one
+name keep two headers from being included together. Nor may a type of the
+library bear the name of one of the public headers.
 
 check_names.py [ROOT]; one line per offence, exit status 1 if there is one.
 """
@@ -46,6 +47,11 @@ def names(text):
             for name in pattern.findall(text)}
 
 
+def local_names(text):
+    """Those of its anonymous namespaces."""
+    return {one for part in LOCAL.findall(text) for one in names(part)}
+
+
 def library_of(path):
     return next((prefix for prefix in LIBRARIES if path.startswith(prefix)),
                 None)
@@ -64,6 +70,7 @@ def offences(root):
     declared = collections.defaultdict(list)
     defined = collections.defaultdict(list)
     types = collections.defaultdict(list)
+    constants = collections.defaultdict(list)
     folders = {prefix.split("/")[0] for prefix in LIBRARIES}
     for path in sorted(path for folder in folders
                        for path in (root / folder).rglob("*")):
@@ -73,10 +80,10 @@ def offences(root):
                 declared[one].append(name)
             for one in DEFINED_TYPE.findall(path.read_text()):
                 types[one].append(name)
+            for one in CONSTANT.findall(path.read_text()):
+                constants[one].append(name)
         if path.suffix == ".cpp":
-            local = {one for part in LOCAL.findall(path.read_text())
-                     for one in names(part)}
-            for one in local:
+            for one in local_names(path.read_text()):
                 defined[library_of(name), one].append(name)
     for path in sorted((root / "include").rglob("*.h")):
         for one in set(DEFINED_TYPE.findall(path.read_text())):
@@ -84,6 +91,9 @@ def offences(root):
     for one, headers in sorted(types.items()):
         if len(headers) > 1:
             yield f"{one}: a type in {', '.join(headers)}"
+    for one, headers in sorted(constants.items()):
+        if len(headers) > 1:
+            yield f"{one}: a constant in {', '.join(headers)}"
     for (library, one), files in sorted(defined.items()):
         hidden = [header for header in declared[one] if sees(library, header)]
         if len(files) > 1 or hidden:

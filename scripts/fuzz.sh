@@ -37,7 +37,7 @@ for target in "${targets[@]}"; do
     status=2 fail "no target $target; expected one of" tests/fuzz/*_fuzz.cpp
 done
 
-scripts/build.sh fuzz
+scripts/build.sh asan
 mkdir -p build/fuzz/findings
 jobs=$(($(nproc) < ${#targets[@]} ? $(nproc) : ${#targets[@]}))
 seconds=$((minutes * 60 * jobs / ${#targets[@]}))
@@ -50,7 +50,7 @@ fuzz() {
   # HDF5 keeps what it has to the end, and to tell that from a leak takes longer
   # than to read. The unit tests look for leaks.
   grep -q hdf5_seeds "tests/fuzz/${target}_fuzz.cpp" && more+=(-detect_leaks=0)
-  "build/fuzz/tests/fuzz/${target}_fuzz" -max_total_time=$((seconds + 1)) \
+  "build/asan/tests/fuzz/${target}_fuzz" -max_total_time=$((seconds + 1)) \
     -timeout=20 -rss_limit_mb=2048 -print_final_stats=1 -verbosity=1 "${more[@]}" \
     -artifact_prefix="build/fuzz/findings/$target-" \
     "build/fuzz/corpus/$target" "tests/fuzz/corpus/$target" >"$log" 2>&1 ||

@@ -27,11 +27,11 @@ using Bits = std::int64_t __attribute__((vector_size(8 * kLanes)));
 Index lanes_of(Index samples) { return (samples + kLanes - 1) / kLanes; }
 
 BEAMGYRO_INLINE const Lane* row_of(const double* rows, Index k) {
-  return reinterpret_cast<const Lane*>(rows + k * kBlockSamples);
+  return reinterpret_cast<const Lane*>(rows + k * kBatchSamples);
 }
 
 BEAMGYRO_INLINE Lane* row_of(double* rows, Index k) {
-  return reinterpret_cast<Lane*>(rows + k * kBlockSamples);
+  return reinterpret_cast<Lane*>(rows + k * kBatchSamples);
 }
 
 // tanh z = (e^u - 1) / (e^u + 1), u = 2 z = n ln 2 + r. With Pade's [6/6] of
@@ -189,8 +189,8 @@ BEAMGYRO_INLINE void go_back(const std::vector<NetworkLayer>& layers,
                              const double* w, const SampleBlock& block,
                              const double* e, double* delta, double* result) {
   const Index count = lanes_of(block.samples);
-  double* next = delta + widest_of(layers) * kBlockSamples;
-  const double* a = block.activations + rows_below_last(layers) * kBlockSamples;
+  double* next = delta + widest_of(layers) * kBatchSamples;
+  const double* a = block.activations + rows_below_last(layers) * kBatchSamples;
   std::copy_n(e, count * kLanes, delta);
   for (std::size_t n = layers.size(); n-- > 0;) {
     const NetworkLayer& layer = layers[n];
@@ -198,7 +198,7 @@ BEAMGYRO_INLINE void go_back(const std::vector<NetworkLayer>& layers,
     if (n == 0) break;
     propagate_batch_back(layer, w, a, delta, next, count);
     std::swap(delta, next);
-    a -= layers[n - 1].in * kBlockSamples;
+    a -= layers[n - 1].in * kBatchSamples;
   }
 }
 
@@ -239,7 +239,7 @@ BEAMGYRO_WIDE void forward(const std::vector<NetworkLayer>& layers,
   const Index count = lanes_of(block.samples);
   double* a = block.activations;
   for (const NetworkLayer& layer : layers) {
-    double* out = layer.last ? block.error : a + layer.in * kBlockSamples;
+    double* out = layer.last ? block.error : a + layer.in * kBatchSamples;
     forward_layer(layer, w, a, out, count);
     a = out;
   }
@@ -269,10 +269,10 @@ BEAMGYRO_WIDE void second_derivative(const std::vector<NetworkLayer>& layers,
                                      double* curvature) {
   const Index count = lanes_of(block.samples), widest = widest_of(layers);
   const double* a = block.activations;
-  double* below = scratch + 2 * widest * kBlockSamples;
+  double* below = scratch + 2 * widest * kBatchSamples;
   double* out = scratch;
   for (const NetworkLayer& layer : layers) {
-    const double* outputs = a + layer.in * kBlockSamples;
+    const double* outputs = a + layer.in * kBatchSamples;
     derivatives_of_layer(layer, w, v, a, below, out, outputs, widest, count);
     a = outputs;
     std::swap(below, out);
@@ -288,7 +288,7 @@ BEAMGYRO_WIDE void add_products(const double* jacobian, Index rows,
   const Index count = lanes_of(samples);
   for (Index i = 0; i < rows; i += kTile)
     for (Index j = 0; j < i + kTile; j += 2)
-      add_tile(jacobian + i * kBlockSamples, jacobian + j * kBlockSamples,
+      add_tile(jacobian + i * kBatchSamples, jacobian + j * kBatchSamples,
                count, products + i * rows + j, rows);
 }
 

@@ -31,31 +31,31 @@ BatchNetwork::BatchNetwork(const std::vector<int>& layer_sizes,
     neurons_ += layer.in;
     widest_ = std::max(widest_, layer.out);
   }
-  const Index blocks = rounded_up(rows_, kBlockSamples) / kBlockSamples;
-  data_ = Values(blocks * (neurons_ + kBookRows) * kBlockSamples);
+  const Index blocks = rounded_up(rows_, kBatchSamples) / kBatchSamples;
+  data_ = Values(blocks * (neurons_ + kBookRows) * kBatchSamples);
   for (Index k = 0; k < blocks; ++k) {
     const SampleBlock b = block(k);
-    const Index first = k * kBlockSamples;
+    const Index first = k * kBatchSamples;
     for (Index i = 0; i < rows.inputs.cols(); ++i)
       std::copy_n(rows.inputs.col(i).data() + first, b.samples,
-                  b.activations + i * kBlockSamples);
-    double* target = b.error + kBlockSamples;
+                  b.activations + i * kBatchSamples);
+    double* target = b.error + kBatchSamples;
     std::copy_n(rows.target.data() + first, b.samples, target);
-    std::fill_n(target + kBlockSamples, b.samples, 1.0);
+    std::fill_n(target + kBatchSamples, b.samples, 1.0);
   }
   const Index chunks = std::clamp(blocks / kChunkBlocks, Index{1}, kMaxChunks);
   for (Index c = 0; c < chunks; ++c)
     chunks_.push_back({blocks * c / chunks, blocks * (c + 1) / chunks,
-                       Values(columns_ * kBlockSamples),
-                       Values((4 * widest_ + 1) * kBlockSamples),
+                       Values(columns_ * kBatchSamples),
+                       Values((4 * widest_ + 1) * kBatchSamples),
                        Values(columns_ * columns_)});
 }
 
 SampleBlock BatchNetwork::block(Index k) {
-  double* first = data_.data() + k * (neurons_ + kBookRows) * kBlockSamples;
-  double* error = first + neurons_ * kBlockSamples;
-  return {first, error + kBlockSamples, error + 2 * kBlockSamples, error,
-          std::min(kBlockSamples, rows_ - k * kBlockSamples)};
+  double* first = data_.data() + k * (neurons_ + kBookRows) * kBatchSamples;
+  double* error = first + neurons_ * kBatchSamples;
+  return {first, error + kBatchSamples, error + 2 * kBatchSamples, error,
+          std::min(kBatchSamples, rows_ - k * kBatchSamples)};
 }
 
 // Calls f(chunk) for every chunk, on the threads there are.
@@ -90,7 +90,7 @@ void BatchNetwork::normal_equations(Eigen::MatrixXd& matrix,
       const SampleBlock b = block(k);
       double* rows = chunk.jacobian.data();
       jacobian(layers_, w_.data(), b, chunk.scratch.data(), rows);
-      std::copy_n(b.error, kBlockSamples, rows + w_.size() * kBlockSamples);
+      std::copy_n(b.error, kBatchSamples, rows + w_.size() * kBatchSamples);
       add_products(rows, columns_, b.samples, products);
     }
   });
@@ -108,7 +108,7 @@ VectorXd BatchNetwork::curvature(const VectorXd& v) {
   for_each_chunk([&](Chunk& chunk) {
     double* sum = chunk.products.data();
     double* scratch = chunk.scratch.data();
-    double* bend = scratch + 4 * widest_ * kBlockSamples;
+    double* bend = scratch + 4 * widest_ * kBatchSamples;
     std::fill_n(sum, columns_, 0.0);
     for (Index k = chunk.first; k < chunk.last; ++k) {
       const SampleBlock b = block(k);

@@ -10,13 +10,13 @@
 namespace beamgyro::internal {
 
 /// Number of samples in a block of BatchNetwork, a multiple of kLanes.
-constexpr Eigen::Index kBlockSamples = 64;
+constexpr Eigen::Index kBatchSamples = 64;
 /// Number of parts in which sums over samples are kept, on every processor.
 constexpr Eigen::Index kLanes = 4;
 /// The augmented Jacobian has a multiple of this many columns.
 constexpr Eigen::Index kTile = 4;
 
-/// One block of samples. All arrays have kBlockSamples entries in a row and are
+/// One block of samples. All arrays have kBatchSamples entries in a row and are
 /// aligned to kLanes doubles. Entries from `samples` up to the next multiple of
 /// kLanes are evaluated with weight 0.
 struct SampleBlock {

@@ -3,7 +3,8 @@
 #include "sim/campaign/campaign.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
+                                      std::size_t size) {
   using namespace beamgyro::internal;
   const std::filesystem::path file =
       scratch_file("campaign.toml", text_of(data, size));

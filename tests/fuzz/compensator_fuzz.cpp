@@ -8,7 +8,8 @@
 #include "tests/dataset/sample_recording.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
+                                      std::size_t size) {
   using namespace beamgyro::internal;
   static const beamgyro::Recording recording = sample_recording(20);
   accept_or_reject([&] {

@@ -4,7 +4,8 @@
 #include "sim/dynamics/gyro.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
+                                      std::size_t size) {
   using namespace beamgyro::internal;
   accept_or_reject([&] {
     const ConfigDocument document =

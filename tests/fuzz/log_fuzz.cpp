@@ -4,7 +4,8 @@
 #include "dataset/recording/recording_defect.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
+                                      std::size_t size) {
   using namespace beamgyro::internal;
   const auto [map, log] = split(text_of(data, size));
   accept_or_reject([&, map = map, log = log] {

@@ -31,7 +31,8 @@ std::string with_checksums(std::string_view lines) {
 
 }  // namespace
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
+                                      std::size_t size) {
   using namespace beamgyro::internal;
   const std::filesystem::path set = scratch_folder() / "set";
   std::filesystem::create_directory(set);

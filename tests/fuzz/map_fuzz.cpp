@@ -3,7 +3,8 @@
 #include "dataset/log/log_map.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
+                                      std::size_t size) {
   using namespace beamgyro::internal;
   for (const char* axis : {"", "x", "z"}) {
     accept_or_reject([&] {

@@ -3,7 +3,8 @@
 #include "compensation/training/model_file.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
+                                      std::size_t size) {
   using namespace beamgyro::internal;
   accept_or_reject([&] {
     static_cast<void>(read_model(ConfigDocument::parse(

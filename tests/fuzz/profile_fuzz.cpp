@@ -5,7 +5,8 @@
 #include "sim/scenario/scenario_file.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
+                                      std::size_t size) {
   using namespace beamgyro::internal;
   const std::string_view text = text_of(data, size);
   accept_or_reject([&] { static_cast<void>(parse_csv(text, "fuzz.csv")); });

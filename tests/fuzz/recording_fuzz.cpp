@@ -27,7 +27,8 @@ std::vector<std::string> recordings() {
 
 }  // namespace
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
+                                      std::size_t size) {
   static const Hdf5Seeds seeds(recordings);
   const std::filesystem::path file =
       scratch_file("recording.h5", seeds.file_of(text_of(data, size)));

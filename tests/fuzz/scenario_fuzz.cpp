@@ -3,7 +3,8 @@
 #include "sim/scenario/scenario_file.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
+                                      std::size_t size) {
   using namespace beamgyro::internal;
   accept_or_reject([&] {
     const ConfigDocument document = ConfigDocument::parse(

@@ -28,7 +28,8 @@ std::vector<std::string> shards() {
 
 }  // namespace
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
+                                      std::size_t size) {
   static const Hdf5Seeds seeds(shards);
   const std::filesystem::path file =
       scratch_file("shard.h5", seeds.file_of(text_of(data, size)));

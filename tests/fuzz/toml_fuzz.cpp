@@ -38,7 +38,8 @@ void read_all(const ConfigTable& table, int depth = 0) {
 
 }  // namespace
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
+                                      std::size_t size) {
   const auto [text, sets] = split(text_of(data, size));
   accept_or_reject([&, text = text, sets = sets] {
     Overrides overrides(lines_of(sets));

@@ -49,6 +49,13 @@ class CheckNames(unittest.TestCase):
         self.assertEqual(answer, "Answered: a type in compensation/a/"
                          "a.h, validation/b/b.h\n")
 
+    def test_a_constant_that_two_headers_define(self):
+        answer = self.check({
+            "sim/stepper/a.h": "inline constexpr double kLongest = 1e5;\n",
+            "compensation/b.h": "constexpr double kLongest = 1.5;\n"})
+        self.assertEqual(answer, "kLongest: a constant in compensation/b.h, "
+                         "sim/stepper/a.h\n")
+
     def test_a_type_of_the_library_with_a_public_name(self):
         answer = self.check({
             "include/beamgyro/a.h": "class Gyro {\n};\nenum class Part {\n};\n",
