@@ -11,7 +11,7 @@
 namespace beamgyro {
 
 struct FmuOptions {
-  int fmi = 2;  ///< version of the standard, 2 or 3
+  int fmi = 2;                           ///< version of the standard, 2 or 3
   std::string fidelity = "quasistatic";  ///< or "envelope"; see GyroStart
   /// The shared object beamgyro_fmu.so of this program.
   std::filesystem::path binary;
