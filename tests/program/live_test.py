@@ -5,11 +5,14 @@ import math
 import select
 import struct
 import subprocess
+import sys
 
 import numpy as np
 
-import beamgyro as bg
 from program import PATIENCE, PROGRAM, SCENARIOS, ProgramTest
+
+sys.path.insert(0, str(PROGRAM.parent / "python"))
+import beamgyro as bg  # noqa: E402
 
 NOMINAL = SCENARIOS / "devices/nominal.toml"
 NAMES = "time,rate,ambient_temperature\n"
@@ -38,6 +41,20 @@ FAULTS = [("1,2\n", "input:4: 2 cells; expected 3"),
           ("-5,2,25\n", "time -5 does not follow"),
           ("1e9,2,25\n", "duration"),
           ("\0\xff\n", "1 cell"),
+          ("1 2 25\n", "1 cell; expected 3"),
+          ("1;2;25\n", "1 cell; expected 3"),
+          ("1,2,25,\n", "4 cells; expected 3"),
+          (",,\n", 'time is ""'),
+          ('1,"2",25\n', "rate is"),
+          ("1,+-2,25\n", 'rate is "+-2"'),
+          ("1,1_000,25\n", 'rate is "1_000"'),
+          ("1,2e,25\n", 'rate is "2e"'),
+          ("1,true,25\n", 'rate is "true"'),
+          ("1,2,25 degC\n", 'ambient_temperature is "25 degC"'),
+          ("1e400,2,25\n", "time"),
+          ("1,1e308,25\n", "a rate"),
+          ("1,-10001,25\n", "a rate"),
+          ("1,2,-1e308\n", "the ambient temperature"),
           ("1" * 70000 + "\n", "a line of more than")]
 
 
