@@ -114,7 +114,7 @@ wanted tidy && tidy
 if wanted deep || wanted faults || wanted packages || wanted image; then
   if build_release -DBEAMGYRO_BENCH=ON; then
     if wanted deep; then
-      unit_tests "deep unit tests" release --label-regex deep
+      unit_tests "deep unit tests" release --label-regex deep --timeout 900
       program_tests "deep tests of the program" release -n "$(nproc)" -m deep
     fi
     if wanted faults; then
