@@ -179,7 +179,10 @@ class Packages(unittest.TestCase):
                                    f"{lib}/pkgconfig"})
 
     def test_a_program_is_built_with_the_unpacked_library(self):
-        usr = self.dir / "libbeamgyro-dev/usr"
+        # With the library that it depends on.
+        for name in ["libbeamgyro-dev", "libbeamgyro0.1"]:
+            said("dpkg-deb", "-x", self.debs[name], self.dir / "both")
+        usr = self.dir / "both/usr"
         user = self.dir / "user"
         user.mkdir()
         (user / "user.cpp").write_text(
