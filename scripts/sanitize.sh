@@ -4,7 +4,7 @@
 #
 #   address   the unit tests with the address, undefined-behaviour and leak
 #             sanitizers where bytes are parsed, memory is owned or threads run,
-#             with the assertions of Eigen and of the standard library everywhere
+#             with the assertions of Eigen and of the standard library
 #   threads   what the program does on several threads, thread sanitizer
 #   fuzz      every reader of files, a minute of changed inputs each
 #   tidy      clang-tidy on every source
@@ -16,8 +16,8 @@
 #             run, removed
 #   image     the container image on that Debian, built and run
 #
-# Without a PART all but faults and image, which are for what will be released:
-# they take a quarter of an hour more. The last line is the total.
+# Without a PART all but faults and image, which are for what will be released.
+# The last line is the total.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
 # shellcheck source=scripts/ledger.sh

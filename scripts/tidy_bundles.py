@@ -18,8 +18,8 @@ import sys
 from check_names import library_of, local_names
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-NOT_OURS = {"-c", "-o", "-MD", "-MT", "-MF"}
-WITH_VALUE = {"-o", "-MT", "-MF"}
+# What the compiler writes, and where.
+OUTPUTS, PLACES = {"-c", "-MD"}, {"-o", "-MT", "-MF"}
 
 
 class Source:
@@ -41,9 +41,9 @@ class Source:
                 self.macros[name] = value
             elif word in ("-isystem", "-include"):
                 self.options.append((word, next(words)))
-            elif word in WITH_VALUE:
+            elif word in PLACES:
                 next(words)
-            elif word not in NOT_OURS and word != entry["file"]:
+            elif word not in OUTPUTS and word != entry["file"]:
                 self.options.append((word,))
 
     def fits(self, other):

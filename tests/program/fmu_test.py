@@ -223,9 +223,8 @@ class Fmu(ProgramTest):
                 (["-o", "gyro.fmu", "--set", "beam.length_m=40"],
                  ["beam.length_m: 40 is out of range"])]:
             self.rejected("fmu", NOMINAL, *words, says=says)
-        lifelike = NOMINAL.with_name("lifelike.toml")
-        self.rejected("fmu", lifelike, "--fidelity", "envelope", "-o",
-                      "gyro.fmu", says=["lifelike.toml", "envelope"])
+        self.rejected("fmu", LIFELIKE, "--fidelity", "envelope", "-o",
+                      "gyro.fmu", says=[LIFELIKE.name, "envelope"])
 
     def test_the_fidelity_is_in_the_archive(self):
         root = self.made(2, NOMINAL, "--fidelity", "envelope")

@@ -176,12 +176,12 @@ class Seeds(Qualified):
 name = "a tenth"
 not_tested = "does not decide"
 [limits]
-residual_rms_deg_per_s = { max = 0.1, source = "a test" }
+residual_rms_deg_per_s = { max = 0.2, source = "a test" }
 """)
         known = ("--plugin-files", "ramp.csv", "--plugin-files", "warm_up.csv")
         public, _ = self.validate("--spec", "spec.toml", *known, model=cheat)
         self.assertEqual(public["verdict"], "pass", public["words"])
-        drawn, _ = self.validate("--spec", "spec.toml", *known, "--seed", 31,
+        drawn, _ = self.validate("--spec", "spec.toml", *known, "--seed", 34,
                                  "--seeds", 6, model=cheat)
         self.assertEqual(drawn["seeds"]["passed"], 0, drawn["seeds"])
         self.assertEqual(drawn["seeds"]["failed"], 6, drawn["seeds"])
