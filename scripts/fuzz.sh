@@ -11,7 +11,7 @@
 # each target. An input that is neither read nor refused ends its target, is
 # kept in build/fuzz/findings and gives status 1: mend the cause and put the
 # input, made small, into tests/fuzz/corpus.
-# Wants clang and its sanitizers (Debian: clang libclang-rt-14-dev).
+# Wants clang and its sanitizers (Debian: clang lld libclang-rt-14-dev).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -25,7 +25,7 @@ fail() {
 minutes=$1
 shift
 command -v clang++ >/dev/null ||
-  fail "no clang++ here; install it: apt-get install clang libclang-rt-14-dev"
+  fail "no clang++ here; install it: apt-get install clang lld libclang-rt-14-dev"
 targets=("$@")
 if [ $# -eq 0 ]; then
   for file in tests/fuzz/*_fuzz.cpp; do

@@ -8,6 +8,9 @@
 #   threads   what the program does on several threads, thread sanitizer
 #   fuzz      every reader of files, a minute of changed inputs each
 #   tidy      clang-tidy on every source
+#
+# and, for what will be released,
+#
 #   deep      the benchmarks, compiled; the tests marked `deep`: packages, the site
 #             of the pages, a browser, Slurm, Octave, an emulated Cortex-M4, more
 #             draws
@@ -16,15 +19,16 @@
 #             run, removed
 #   image     the container image on that Debian, built and run
 #
-# Without a PART all but faults and image, which are for what will be released.
-# The last line is the total.
+# Without a PART the first four; `sanitize.sh all` is all of them. The last line
+# is the total.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
 # shellcheck source=scripts/ledger.sh
 source scripts/ledger.sh
-named=$#
-[ "$named" -gt 0 ] || set -- address threads fuzz tidy deep packages
-choose_parts address threads fuzz tidy deep faults packages image -- "$@"
+of_each_change=(address threads fuzz tidy) of_a_release=(deep faults packages image)
+[ $# -gt 0 ] || set -- "${of_each_change[@]}"
+[ "$*" != all ] || set --
+choose_parts "${of_each_change[@]}" "${of_a_release[@]}" -- "$@"
 
 # script NAME COMMAND...: a step that is one script, whose last line is shown.
 # Returns whether it succeeded.
@@ -45,11 +49,8 @@ script() {
 as_root() {
   if [ "$(id -u)" -eq 0 ]; then
     script "$@"
-  elif [ "$named" -gt 0 ]; then
-    broken "$1" "$1: needs root"
   else
-    echo "skipped: $1: needs root" >&2
-    tally "$1" 0 0 1
+    broken "$1" "$1: needs root"
   fi
 }
 
@@ -110,7 +111,7 @@ if wanted fuzz; then
   script fuzz scripts/fuzz.sh $(((${#readers[@]} + $(nproc) - 1) / $(nproc)))
 fi
 wanted tidy && tidy
-# The benchmarks, too, which nothing else compiles.
+# The benchmarks, too, which nothing else links.
 if wanted deep || wanted faults || wanted packages || wanted image; then
   if build_release -DBEAMGYRO_BENCH=ON; then
     if wanted deep; then

@@ -23,7 +23,7 @@ tests=(libgtest-dev libbenchmark-dev clang-format clang-tidy netcdf-bin
        python3-ipykernel python3-nbclient python3-tqdm python3-rdflib python3-yaml)
 wheel=(patchelf binutils)
 # What scripts/sanitize.sh has beyond the tests.
-sanitizers=(clang libclang-rt-14-dev)
+sanitizers=(clang lld libclang-rt-14-dev)
 deep=("${wheel[@]}" clang chromium slurm-wlm munge snakemake octave octave-netcdf git
       gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm)
 bare=("${wheel[@]}" debootstrap buildah git)

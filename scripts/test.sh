@@ -45,6 +45,6 @@ if wanted units || wanted program; then
 fi
 
 echo "scripts/sanitize.sh checks the rest: memory and undefined behaviour," \
-  "races between threads, clang-tidy, packages, the site of the pages, the" \
-  "image, pages in a browser, Slurm, Octave, a Cortex-M4"
+  "races between threads, readers of files with changed inputs, clang-tidy;" \
+  "scripts/sanitize.sh all also what is for a release"
 finish

@@ -137,6 +137,8 @@ class Packages(unittest.TestCase):
     def test_no_file_tells_where_it_was_built(self):
         for package in self.debs:
             for name, path in self.files(package).items():
+                if path.is_symlink():  # its target is in another package
+                    continue
                 data = path.read_bytes()
                 self.assertNotIn(str(ROOT).encode() + b"/", data)
                 self.assertNotIn(str(BUILD).encode(), data)

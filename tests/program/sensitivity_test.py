@@ -183,6 +183,9 @@ class Sensitivity(ProgramTest):
         self.assertTrue(all(index["total"] == 0 for index in
                             found["figures"][PP]["indices"]))
 
+    # A fact of one campaign that sensitivity.md states; how indices and their
+    # order are estimated has tests in test.sh.
+    @pytest.mark.deep
     def test_the_first_five_of_the_shipped_population_are_certain(self):
         # Between two estimators of the total index and two seeds, and the
         # largest first order between two estimators. The fourth and the fifth

@@ -126,7 +126,7 @@ class Bundled(Wheels):
         self.assertGreater(len(held), 8)
         files = [path for path in (self.dir / "files").rglob("*")
                  if path.is_file() and path.read_bytes()[:4] == b"\x7fELF"]
-        self.assertEqual(len(files), len(held) + 2)  # module and program
+        self.assertEqual(len(files), len(held) + 3)  # module, program, FMU
         allowed = re.compile(r"(ld-linux-x86-64|lib(c|m|stdc\+\+|gcc_s))\.so")
         for path in files:
             for name in said("patchelf", "--print-needed", path).split():

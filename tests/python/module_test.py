@@ -183,7 +183,7 @@ def test_progress_that_returns_false_stops_the_work(least, tmp_path):
         shares.append(share)
         return share < least
 
-    scenario = bg.Scenario(WARM_UP, set={"duration_s": 600,
+    scenario = bg.Scenario(WARM_UP, set={"duration_s": 20,
                                          "fidelity": "carrier"})
     with pytest.raises(bg.Cancelled, match="cancelled"):
         bg.run_to_file(scenario, tmp_path / "run.h5", progress=is_to_go_on)
