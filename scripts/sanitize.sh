@@ -89,12 +89,14 @@ scripts/setup.sh "${groups[@]}" || { broken set-up "set-up failed"; finish; exit
 mkdir -p build
 
 if wanted address; then
+  computing=(ReplayOfLoops RebalanceStability LoopChannelRun V55DriveFrequency
+             NoiseCoefficients DeclaredResponse PlantedFaults)
   if sanitized asan address; then
-    # Those left out follow a loop through millions of its periods, or score whole
-    # qualifications, whose parts have tests of their own.
+    # Those left out follow a loop through millions of its periods, find the noise
+    # of as many samples, or score whole qualifications, whose parts have tests of
+    # their own.
     unit_tests "unit tests with sanitizers" asan --label-exclude 'many_draws|deep' \
-      --exclude-regex \
-      'ReplayOfLoops|RebalanceStability|LoopChannelRun|DeclaredResponse|PlantedFaults'
+      --exclude-regex "$(IFS='|'; echo "${computing[*]}")"
   else
     broken "build (asan)" "no build with sanitizers: see build/asan.log"
   fi
