@@ -12,13 +12,15 @@
 namespace beamgyro::internal {
 
 /// The columns of a log whose rate is "w" and whose temperature is "T".
-inline const std::string kGyroAndTemperature = R"([gyro]
+inline std::string gyro_and_temperature() {
+  return R"([gyro]
 column = "w"
 unit = "deg/s"
 [temperature]
 column = "T"
 unit = "degC"
 )";
+}
 
 /// A map whose log has the time "t" and the rate "w" and is joined, over at
 /// most `gap` s, with one of the time "t" and the temperature "T".

@@ -11,7 +11,7 @@ namespace {
 using Readings = std::vector<double>;
 
 const std::string kSeconds =
-    "[time]\ncolumn = \"t\"\nunit = \"s\"\n" + kGyroAndTemperature;
+    "[time]\ncolumn = \"t\"\nunit = \"s\"\n" + gyro_and_temperature();
 
 std::string refusal(const std::string& map, const std::string& log,
                     const std::string& second = "") {
@@ -30,13 +30,13 @@ void expect_no_advice(const std::string& message, const std::string& part) {
 
 TEST(LogAdvice, AColumnOfDatesHasAFormat) {
   expect_advice(
-      refusal("[time]\ncolumn = \"t\"\n" + kGyroAndTemperature,
+      refusal("[time]\ncolumn = \"t\"\n" + gyro_and_temperature(),
               "t,w,T\n2026-03-05,1,25\n"),
       {"map.toml:1:1: time.unit: missing", "\"ms\"", "time.format = \"iso\""});
-  expect_advice(
-      refusal("[time]\ncolumn = \"t\"\nunits = \"s\"\n" + kGyroAndTemperature,
-              "t,w,T\n0,1,25\n"),
-      {"time.unit: missing", "there is a 'units' in line 3"});
+  expect_advice(refusal("[time]\ncolumn = \"t\"\nunits = \"s\"\n" +
+                            gyro_and_temperature(),
+                        "t,w,T\n0,1,25\n"),
+                {"time.unit: missing", "there is a 'units' in line 3"});
 }
 
 TEST(LogAdvice, ALineOfUnitsIsSkipped) {
@@ -161,7 +161,7 @@ TEST(LogAdvice, ALogThatIsNotUtf8) {
 
 TEST(LogAdvice, ADateAndATimeBetweenBlanksAreTwoColumns) {
   const std::string map =
-      "[time]\ncolumn = \"when\"\nformat = \"iso\"\n" + kGyroAndTemperature;
+      "[time]\ncolumn = \"when\"\nformat = \"iso\"\n" + gyro_and_temperature();
   const std::string log =
       "when w T\n2026-03-05 14:00:00 1 25\n2026-03-05 14:00:01 1 25\n";
   const std::string message = refusal(map, log);
@@ -188,7 +188,7 @@ unit = "degC"
 TEST(LogTime, MinutesAndHoursBecomeSeconds) {
   const auto times = [](const std::string& unit) {
     return imported("[time]\ncolumn = \"t\"\nunit = \"" + unit + "\"\n" +
-                        kGyroAndTemperature,
+                        gyro_and_temperature(),
                     "t,w,T\n7,0,25\n7.1,0,25\n14,0,25\n")
         .recording.time;
   };

@@ -22,7 +22,7 @@ using Temperature = std::function<double(double)>;  // [degC] over [s]
 std::string said(const std::string& unit, int rows, double step,
                  const Temperature& temperature, const std::string& more = "") {
   const std::string map = "[time]\ncolumn = \"t\"\nunit = \"" + unit + "\"\n" +
-                          kGyroAndTemperature + more;
+                          gyro_and_temperature() + more;
   std::string log = "t,w,T\n";
   for (int k = 0; k < rows; ++k)
     log += fmt::format("{:.6g},0.1,{:.2f}\n", k * step, temperature(k * step));

@@ -14,7 +14,7 @@ namespace {
 using Values = std::vector<double>;
 
 const std::string kMap =
-    "[time]\ncolumn = \"t\"\nunit = \"ms\"\n" + kGyroAndTemperature;
+    "[time]\ncolumn = \"t\"\nunit = \"ms\"\n" + gyro_and_temperature();
 
 ImportedLog log_of(const std::string& text, const std::string& map = kMap) {
   ImportedLog log = imported(map, text);

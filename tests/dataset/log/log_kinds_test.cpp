@@ -13,7 +13,7 @@ namespace {
 
 using Numbers = std::vector<double>;
 
-const std::string kRest = "\n" + kGyroAndTemperature;
+const std::string kRest = "\n" + gyro_and_temperature();
 
 std::string rejection_by(const std::string& map, const std::string& text,
                          const std::string& second = "") {

@@ -13,7 +13,7 @@ namespace {
 
 const std::string kMap =
     "powered_s = 5\n[time]\ncolumn = \"t\"\nunit = \"ms\"\n" +
-    kGyroAndTemperature;
+    gyro_and_temperature();
 
 std::string changed(const std::string& from, const std::string& to) {
   const std::size_t at = kMap.find(from);
