@@ -89,12 +89,14 @@ scripts/setup.sh "${groups[@]}" || { broken set-up "set-up failed"; finish; exit
 mkdir -p build
 
 if wanted address; then
+  # Left out: what follows a loop through millions of its periods, finds the noise
+  # of as many samples, draws whole populations, scores whole qualifications, or
+  # trains every kind of compensator. The parts of these have tests of their own.
   computing=(ReplayOfLoops RebalanceStability LoopChannelRun V55DriveFrequency
-             NoiseCoefficients DeclaredResponse PlantedFaults)
+             NoiseCoefficients UndecidableLimits AdaptationSigma HysteresisRms
+             PopulationMembership PopulationOwnParts SpuriousPopulation
+             DeclaredResponse PlantedFaults ExportedC)
   if sanitized asan address; then
-    # Those left out follow a loop through millions of its periods, find the noise
-    # of as many samples, or score whole qualifications, whose parts have tests of
-    # their own.
     unit_tests "unit tests with sanitizers" asan --label-exclude 'many_draws|deep' \
       --exclude-regex "$(IFS='|'; echo "${computing[*]}")"
   else

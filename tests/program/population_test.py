@@ -9,6 +9,7 @@ import tempfile
 import unittest
 
 import numpy as np
+import pytest
 
 from program import PROGRAM, ROOT, ended, script
 
@@ -61,6 +62,8 @@ class Draws(unittest.TestCase):
                                 for t in draw["bond.thickness_m"]))
 
 
+# What the study runs has tests of its own in test.sh; its script has not.
+@pytest.mark.deep
 class ShortenedRun(unittest.TestCase):
     def test_leaves_finite_figures_and_no_recording_and_goes_on(self):
         with tempfile.TemporaryDirectory(prefix="a population ") as folder:
