@@ -159,6 +159,24 @@ TEST(GyroStepper, NoiseBelongsToItsTicksHoweverTimeIsCut) {
   }
 }
 
+// Of the ticks within a step only the last is shown.
+TEST(GyroStepper, AStepOverManyTicksShowsTheNoiseOfItsLast) {
+  const StepperStart start{.seed = 3, .noise_rate = 10};
+  GyroStepper long_steps = stepper_of("nominal", start);
+  GyroStepper short_steps = stepper_of("nominal", start);
+  for (int k = 0; k < 20; ++k) {
+    for (int tick = 0; tick < 5; ++tick)
+      short_steps.step(0.1, turning(0), true);
+    const StepSample& sample = long_steps.step(0.5, turning(0), true);
+    const StepSample& expected = short_steps.now();
+    EXPECT_NEAR(sample.rate, expected.rate, 1e-7);
+    EXPECT_NEAR(sample.temperature, expected.temperature, 1e-9);
+    EXPECT_NEAR(sample.quadrature, expected.quadrature, 1e-9);
+    EXPECT_NEAR(sample.drive_frequency, expected.drive_frequency, 1e-9);
+    EXPECT_NEAR(sample.drive_voltage, expected.drive_voltage, 1e-9);
+  }
+}
+
 TEST(GyroStepper, TheRateOfTheNoiseIsThatOfTheFirstStep) {
   GyroStepper given = stepper_of("nominal", {.seed = 3, .noise_rate = 50});
   GyroStepper taken = stepper_of("nominal", {.seed = 3});
