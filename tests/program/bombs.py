@@ -165,7 +165,7 @@ class Recordings:
         and so many more variables; rate, temperature and true rate alone."""
         with self.opened(name) as file:
             kept = ("time", "status", "rate", "temperature", "true_rate")
-            for variable in set(file) - {"meta"}:
+            for variable in sorted(set(file) - {"meta"}):
                 old = file[variable]
                 said = {key: old.attrs[key]
                         for key in ("units", "long_name", "role")}
