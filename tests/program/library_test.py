@@ -223,15 +223,20 @@ class Library(Call):
 
     def test_the_ten_lines_run_as_pkg_config_builds_them(self):
         pkgconfig = next(self.prefix.rglob("beamgyro.pc")).parent
-        self.call("sh", "-c", f"PKG_CONFIG_PATH={pkgconfig} && "
-                  "export PKG_CONFIG_PATH && c++ user.cpp -o by_pkg_config "
-                  "$(pkg-config --cflags --libs beamgyro)")
-        said = self.call("./by_pkg_config", SCENARIOS / "ten_minutes.toml")
-        self.assertEqual(said.stdout, "3000 samples\n")
-        version = ended("pkg-config", "--modversion", "beamgyro",
-                        env={"PKG_CONFIG_PATH": str(pkgconfig)}).stdout
         stated = self.call(self.prefix / "bin/beamgyro", "--version").stdout
-        self.assertIn(f"beamgyro {version.strip()} (", stated)
+        for module, also in [("beamgyro", ""), (
+                "beamgyro-shared", f"-Wl,-rpath,{pkgconfig.parent}")]:
+            self.call("sh", "-c", f"PKG_CONFIG_PATH={pkgconfig} && "
+                      "export PKG_CONFIG_PATH && "
+                      f"c++ user.cpp -o by_{module} {also} "
+                      f"$(pkg-config --cflags --libs {module})")
+            said = self.call(f"./by_{module}", SCENARIOS / "ten_minutes.toml")
+            self.assertEqual(said.stdout, "3000 samples\n")
+            version = ended("pkg-config", "--modversion", module,
+                            env={"PKG_CONFIG_PATH": str(pkgconfig)}).stdout
+            self.assertIn(f"beamgyro {version.strip()} (", stated)
+        needed = self.call("readelf", "-d", "by_beamgyro-shared").stdout
+        self.assertIn("Shared library: [libbeamgyro.so.0.1]", needed)
 
     # What stands for it in test.sh: the library makes the bytes of the program,
     # below. Nothing there links it with an Eigen of the user's, and the test of
