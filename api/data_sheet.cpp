@@ -75,12 +75,11 @@ void check_ranges(const DataSheet& s) {
 }
 
 void check_beam(const DataSheet& s) {
-  constexpr double kSlender = 0.2;
-  if (s.length && s.side && *s.side > kSlender * *s.length)
+  if (s.length && s.side && !is_beam(*s.length, *s.side))
     throw option_error(
-        "{} and {}: no beam; expected a side of at most a fifth "
-        "of the length",
-        option("length", *s.length), option("side", *s.side));
+        "{} and {}: no beam; expected one {:g} to {:g} times as long as thick",
+        option("length", *s.length), option("side", *s.side), kStoutest,
+        kSlenderest);
   if (s.quality && s.air_quality && *s.air_quality <= *s.quality)
     throw option_error(
         "{} and {}: the gas alone leaves less than the gyro is to have; "
@@ -233,6 +232,10 @@ std::vector<std::string> figures_of(const DataSheet& s) {
   add("warm_up_s", s.warm_up_s);
   add_range("temperature_degC", s.temperature_degC);
   return figures;
+}
+
+bool is_beam(double length, double side) {
+  return side <= length / kStoutest && side >= length / kSlenderest;
 }
 
 void require_sound(const DataSheet& sheet) {

@@ -14,6 +14,11 @@ namespace beamgyro::internal {
 /// range, and for two that contradict each other.
 void require_sound(const DataSheet& sheet);
 
+/// Length over side of a beam, at least and at most. Assumed: a block is no
+/// beam, and no patch fits on a hair.
+inline constexpr double kStoutest = 5, kSlenderest = 200;
+bool is_beam(double length, double side);  // [m]
+
 /// Returns "name = value" of each figure that is given.
 std::vector<std::string> figures_of(const DataSheet& sheet);
 

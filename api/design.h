@@ -24,6 +24,7 @@ class Design {
   Device device() const { return text_.device(heading_); }
 
   void scale_beam(double length_factor, double side_factor);
+  void require_beam(double length, double side) const;  // [m]
   void meet_frequency();
   void meet_split();
   void meet_quality();

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "api/data_sheet.h"
 #include "api/design.h"
 #include "api/device_figures.h"
 #include "config/option_message.h"
@@ -50,6 +51,21 @@ void Design::scale_beam(double along, double across) {
       "as the conductances, for the same rise");
 }
 
+// What length and frequency, or side and frequency, make is a beam. Without
+// either it is as slender as the base's.
+void Design::require_beam(double length, double side) const {
+  if ((!sheet_.length && !sheet_.side) || is_beam(length, side)) return;
+  const bool stout = length < kStoutest * side;
+  throw option_error(
+      "{}: with {} the beam would be {} {:g} times as long as thick; expected "
+      "a {} frequency",
+      NamedOption{"frequency_Hz", fmt::format("{:g}", *sheet_.frequency_Hz)},
+      sheet_.length ? fmt::format("a length of {:g} m", *sheet_.length)
+                    : fmt::format("a side of {:g} m", *sheet_.side),
+      stout ? "less than" : "more than", stout ? kStoutest : kSlenderest,
+      stout ? "lower" : "higher");
+}
+
 void Design::meet_frequency() {
   const double length = base_.number("beam.length_m");
   const double side = base_.number("beam.side_m");
@@ -81,6 +97,7 @@ void Design::meet_frequency() {
       along /= std::sqrt(ratio);
     else
       along /= ratio, across /= ratio;
+    require_beam(length * along, side * across);
     scale_beam(along, across);
     found = steady_figures(device()).frequency;
   }

@@ -35,7 +35,7 @@ class DeviceText {
   std::string text(const std::vector<std::string>& heading) const;
   /// Returns the device that this file describes.
   Device device(const std::vector<std::string>& heading = {}) const {
-    return Device::parse(text(heading), "device");
+    return Device::parse(text(heading), "the device of these figures");
   }
 
  private:
