@@ -16,7 +16,8 @@ lifelike ones up and down. Of --units further ones, of another seed, each is
 Scored are other runs of the unit with all noise, after another power-on: the
 soaks of a sweep once they have settled and before, the ramps of a run up and
 down, the first 15 min of a warm-up, and the settled soaks a year later, by rows
-of 60 s within the temperatures of training. Units that `train` names foreign to
+of 60 s within the temperatures of training. The sweep rises; units that remember
+have one that falls as well, and both count: sigma does not know the way. Units that `train` names foreign to
 their population, of which sigma does not hold, are counted and left out.
 Printed are the share within the interval of 90 % and the mean square of
 residual over sigma, units of equal weight, and the medians of the rms left and
@@ -108,6 +109,9 @@ class Study(foreign_units.Study):
                                  ramp=0.2, duration=78300),
             "again": SOAKS.format(device=device, seed=811, soaks=sweep,
                                   hold=2700, ramp=1, duration=26900),
+            "again_down": SOAKS.format(device=device, seed=818,
+                                       soaks=sweep[::-1], hold=2700, ramp=1,
+                                       duration=26900),
             "year": SOAKS.format(device=device, seed=812, soaks=sweep,
                                  hold=2700, ramp=1, duration=26900)
             + f"\n[age]\nhours = {YEAR}\n",
@@ -149,7 +153,7 @@ class Study(foreign_units.Study):
     def runs(self):
         runs = ["sweep", "again", "ramp", "other_ramp", "warm", "other_warm"]
         if self.name == "lifelike":
-            runs.append("year")
+            runs += ["again_down", "year"]
         return runs + [f"soaks_{n}" for n in SHIPPED] + list(self.planned)
 
     def train(self, folder, device, model, runs, extra=()):
@@ -230,30 +234,35 @@ class Study(foreign_units.Study):
         found = {}
         if foreign_units.is_foreign(stored):
             return None
-        for place, run in [("soaks", "again"), ("settling", "again"),
-                           ("ramps", "other_ramp"),
-                           ("warm-up", "other_warm"), ("a year", "year")]:
-            if run not in rows:
-                continue
-            time, T, bias = rows[run][device]
-            rate = uncertainty.temperature_rate(time, T, 300)
-            late = time - time[0] >= WARM_UP
-            moving, settled = abs(rate) >= RAMP, abs(rate) < SETTLED
-            lowest, highest = stored["temperature_range_degC"]
-            lowest = max(lowest, LOWEST.get(self.name, lowest))
-            own = (T >= lowest) & (T <= highest) & {
-                "soaks": settled & late, "ramps": moving & late,
-                "settling": ~moving & ~settled & late,
-                "warm-up": ~late, "a year": settled & late}[place]
-            if not own.any() or "sigma" not in stored:
-                continue
-            error = (bias - curve_of(stored, T))[own]
-            sigma = uncertainty.sigma_of(stored["sigma"], time, T)[own]
-            found[place] = [np.mean(abs(error) <= NORMAL_90 * sigma),
-                            np.mean((error / sigma) ** 2),
-                            np.sqrt(np.mean(error ** 2)),
-                            np.sqrt(np.mean(sigma ** 2))]
+        if "sigma" not in stored:
+            return found
+        sweeps = ["again", "again_down"]
+        for place, runs in [("soaks", sweeps), ("settling", sweeps),
+                            ("ramps", ["other_ramp"]),
+                            ("warm-up", ["other_warm"]), ("a year", ["year"])]:
+            error, sigma = np.hstack([
+                self.errors(stored, place, *rows[run][device])
+                for run in runs if run in rows] or [np.empty((2, 0))])
+            if error.size:
+                found[place] = [np.mean(abs(error) <= NORMAL_90 * sigma),
+                                np.mean((error / sigma) ** 2),
+                                np.sqrt(np.mean(error ** 2)),
+                                np.sqrt(np.mean(sigma ** 2))]
         return found
+
+    def errors(self, stored, place, time, T, bias):
+        """Error and sigma of the rows of a place in a run."""
+        rate = uncertainty.temperature_rate(time, T, 300)
+        late = time - time[0] >= WARM_UP
+        moving, settled = abs(rate) >= RAMP, abs(rate) < SETTLED
+        lowest, highest = stored["temperature_range_degC"]
+        lowest = max(lowest, LOWEST.get(self.name, lowest))
+        own = (T >= lowest) & (T <= highest) & {
+            "soaks": settled & late, "ramps": moving & late,
+            "settling": ~moving & ~settled & late,
+            "warm-up": ~late, "a year": settled & late}[place]
+        return np.array([(bias - curve_of(stored, T))[own],
+                         uncertainty.sigma_of(stored["sigma"], time, T)[own]])
 
 
 def curve_of(stored, T):

@@ -227,6 +227,15 @@ PointEquations with_prior(const PointEquations& points) {
   return all;
 }
 
+double usual_noise(const Population& population, double of_uncompensated) {
+  constexpr double kShare = 0.15;
+  const MatrixXd bias = population.modes.topRows(population.grid());
+  const double square = (bias.rowwise() - bias.colwise().mean()).squaredNorm() /
+                        static_cast<double>(population.grid());
+  return square > 0.0 ? std::min(of_uncompensated, kShare * std::sqrt(square))
+                      : of_uncompensated;
+}
+
 }  // namespace
 
 TemperatureRange Population::range() const {
@@ -288,12 +297,11 @@ double point_noise_of(const Population& population, Index curve,
 }
 
 double usual_point_noise(const Population& population) {
-  constexpr double kShare = 0.15;
-  const MatrixXd bias = population.modes.topRows(population.grid());
-  const double square = (bias.rowwise() - bias.colwise().mean()).squaredNorm() /
-                        static_cast<double>(population.grid());
-  const double usual = PointNoise{}.bias;
-  return square > 0.0 ? std::min(usual, kShare * std::sqrt(square)) : usual;
+  return usual_noise(population, PointNoise{}.bias);
+}
+
+double usual_run_noise(const Population& population) {
+  return usual_noise(population, PointNoise{}.run);
 }
 
 double steepest_bias(const Population& population) {

@@ -45,6 +45,9 @@ struct PointNoise {
   double bias = 0.03;  // [deg/s], > 0
   // [-], > 0, of a channel: over its spread within the population
   double channel_share = 0.01;
+  // [deg/s], > 0, of a whole run: the turn-on offset, and a walk over hours
+  // that its points share
+  double run = 0.036;
 };
 
 /// The sweeps that a population was learned from.
@@ -71,6 +74,7 @@ struct Population {
   int devices = 0;                         // it was learned from
   std::vector<OwnPart> own = {};           // of each curve; or none has any
   double point_noise = PointNoise{}.bias;  // [deg/s], unless one is given
+  double run_noise = PointNoise{}.run;     // likewise
   std::optional<AdaptationSigma> sigma = {};
   // c of its devices, one per row, or of kMostCoefficients of them. Files of
   // older programs have none. The Gaussian process takes no notice of them:
@@ -125,6 +129,8 @@ double point_noise_of(const Population& population, Eigen::Index curve,
 /// that of PointNoise, which is that of uncompensated gyros, but no more than
 /// 15 % of the rms over devices by which a bias differs from its own mean.
 double usual_point_noise(const Population& population);
+/// Returns the same of PointNoise::run.
+double usual_run_noise(const Population& population);
 
 /// Returns the largest rms over devices of the slope of the bias between two
 /// temperatures of the grid [deg/s/K].
@@ -195,13 +201,12 @@ std::optional<AdaptationSigma> adaptation_sigma(
     const TrainingRows& soaks, const ResidualRows& lagging);
 
 /// Returns sigma over temperature of a device adapted with `deviation`, on the
-/// grid of the population: k^2 s^2 = k^2 deviation^2 + 2 noise^2 +
-/// hysteresis_rms()^2 / 2. The turn-on offset and slow noise of `noise` are
-/// those of the run adapted to and, once more, of the run that is compensated,
-/// which goes the other way half of the time.
+/// grid of the population: k^2 s^2 = k^2 deviation^2 + 2 run_noise^2 +
+/// hysteresis_rms()^2 / 2. run_noise [deg/s], PointNoise::run, is that of the
+/// run adapted to and, once more, of the run that is compensated, which goes
+/// the other way half of the time.
 BiasSigma adapted_sigma(const Population& population,
-                        const Eigen::ArrayXd& deviation,
-                        const PointNoise& noise);
+                        const Eigen::ArrayXd& deviation, double run_noise);
 
 /// Returns sigma over temperature of the mean of the population: its spread.
 BiasSigma population_sigma(const Population& population);

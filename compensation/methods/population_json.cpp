@@ -119,6 +119,7 @@ Json population_json(const Population& population) {
                {"modes", rows_json(population.modes.transpose())},
                {"own", own_json(population.own)},
                {"point_noise_deg_per_s", finite_json(population.point_noise)},
+               {"run_noise_deg_per_s", finite_json(population.run_noise)},
                {"coefficients", rows_json(population.coefficients)}};
   if (population.hysteresis.size() > 0)
     json["hysteresis"] = rows_json(population.hysteresis);
@@ -155,6 +156,9 @@ Population read_population(const JsonNode& node) {
     population.own = read_own(node.at("own"), 1 + population.channels.size());
   if (node.has("point_noise_deg_per_s"))
     population.point_noise = read_positive(node.at("point_noise_deg_per_s"));
+  population.run_noise = node.has("run_noise_deg_per_s")
+                             ? read_positive(node.at("run_noise_deg_per_s"))
+                             : population.point_noise;
   if (node.has("sweeps")) population.sweeps = read_sweeps(node.at("sweeps"));
   if (node.has("sigma")) population.sigma = read_adaptation(node.at("sigma"));
   return population;

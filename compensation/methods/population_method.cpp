@@ -76,6 +76,7 @@ PopulationSpec PopulationSpec::read(MethodSource& source) {
 Fit PopulationSpec::fit(const FitTask& task) const {
   Population p = fit_population(task.inputs, task.rows, grid_K);
   p.point_noise = point_noise.value_or(usual_point_noise(p));
+  p.run_noise = point_noise.value_or(usual_run_noise(p));
   p.own = learned_own_parts(p);
   Fit fit =
       model_of(unscaled(task), bias_curve(p, p.mean.head(p.grid()).array()));
@@ -108,6 +109,7 @@ AdaptedSpec AdaptedSpec::read(MethodSource& source) {
   if (row_options.has("steady_K_per_min"))
     spec.steady_K_per_min = row_options.number("steady_K_per_min");
   spec.noise.bias = given > 0.0 ? given : spec.population.point_noise;
+  spec.noise.run = given > 0.0 ? given : spec.population.run_noise;
   spec.source =
       fmt::format("{}, {} devices, sha256 {}", file.filename().string(),
                   spec.population.devices, sha256_of_file(file));
@@ -124,7 +126,8 @@ Fit AdaptedSpec::fit(const FitTask& task) const {
   const TrainingRows rows = used_rows(task.rows);
   const AdaptedBias adapted =
       adapted_bias(population, task.inputs, rows, noise);
-  const BiasSigma sigma = adapted_sigma(population, adapted.deviation, noise);
+  const BiasSigma sigma =
+      adapted_sigma(population, adapted.deviation, noise.run);
   Eigen::Index worst = 0;
   const double largest = sigma.factor * sigma.curve.values.maxCoeff(&worst);
   Fit fit = model_of(unscaled(task), bias_curve(population, adapted.mean));

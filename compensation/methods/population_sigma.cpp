@@ -174,7 +174,7 @@ std::optional<AdaptationSigma> adaptation_sigma(
 }
 
 BiasSigma adapted_sigma(const Population& population, const ArrayXd& deviation,
-                        const PointNoise& noise) {
+                        double run_noise) {
   BiasSigma sigma;
   sigma.source = SigmaSource::kPosterior;
   sigma.calibration.method = "none: the population has no devices to tell";
@@ -191,7 +191,7 @@ BiasSigma adapted_sigma(const Population& population, const ArrayXd& deviation,
   }
   const double hysteresis = hysteresis_rms(population);
   const double run =
-      std::sqrt(2.0 * noise.bias * noise.bias + 0.5 * hysteresis * hysteresis) /
+      std::sqrt(2.0 * run_noise * run_noise + 0.5 * hysteresis * hysteresis) /
       sigma.factor;
   sigma.curve = {population.temperatures,
                  (deviation.square() + run * run).sqrt()};

@@ -101,7 +101,7 @@ BiasSigma uncalibrated(const FittedCompensator& trained,
         adapted_bias(adapted->population, task.inputs,
                      adapted->used_rows(task.rows), adapted->noise)
             .deviation,
-        adapted->noise);
+        adapted->noise.run);
   if (!is_one_of<PolynomialSpec, SplineSpec>(task.kind) ||
       has_several_devices(task))
     throw UndeterminedFit(

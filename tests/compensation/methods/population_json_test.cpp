@@ -22,6 +22,7 @@ Population with_own_parts() {
   p.devices = 30;
   p.own = {{0.02, 10.0}, {0.5, 20.0}};
   p.point_noise = 0.004;
+  p.run_noise = 0.005;
   p.sweeps = {2.0, 870.0};
   return p;
 }
@@ -34,6 +35,7 @@ TEST(PopulationJson, OwnPartsAndNoiseComeBack) {
   const Population p = with_own_parts();
   const Population back = read(population_json(p));
   EXPECT_EQ(back.point_noise, p.point_noise);
+  EXPECT_EQ(back.run_noise, p.run_noise);
   EXPECT_EQ(back.sweeps->of_each_device, 2.0);
   EXPECT_EQ(back.sweeps->seconds_per_K, 870.0);
   EXPECT_EQ(all_modes(back), all_modes(p));
@@ -44,6 +46,8 @@ TEST(PopulationJson, OwnPartsAndNoiseComeBack) {
 TEST(PopulationJson, WithoutThemDevicesHaveNothingOfTheirOwn) {
   Json json = population_json(with_own_parts());
   json.erase("own");
+  json.erase("run_noise_deg_per_s");
+  EXPECT_EQ(read(json).run_noise, 0.004);
   json.erase("point_noise_deg_per_s");
   json.erase("sweeps");
   const Population back = read(json);
@@ -69,6 +73,8 @@ TEST(PopulationJson, RefusesOwnPartsThatAreNone) {
   EXPECT_TRUE(holds(message([](Json& j) { j["own"][1]["L"] = 1; }), "own[1]"));
   EXPECT_TRUE(holds(message([](Json& j) { j["point_noise_deg_per_s"] = 0; }),
                     "point_noise_deg_per_s"));
+  EXPECT_TRUE(holds(message([](Json& j) { j["run_noise_deg_per_s"] = 0; }),
+                    "run_noise_deg_per_s"));
 }
 
 }  // namespace

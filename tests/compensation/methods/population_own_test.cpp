@@ -117,6 +117,7 @@ TEST(PopulationOwnParts, TellNothingOfTooFewDevices) {
 TEST(PopulationOwnParts, NoiseOfAPointIsASmallShareOfTheDrift) {
   const Population p = fit_population(kTemperature, devices(0, 40, 0.0), 5.0);
   EXPECT_EQ(usual_point_noise(p), 0.03);
+  EXPECT_EQ(usual_run_noise(p), 0.036);
   Population small = p;
   small.modes *= 0.01;
   const MatrixXd bias = small.modes.topRows(small.grid());
@@ -124,6 +125,7 @@ TEST(PopulationOwnParts, NoiseOfAPointIsASmallShareOfTheDrift) {
       std::sqrt((bias.rowwise() - bias.colwise().mean()).squaredNorm() /
                 static_cast<double>(small.grid()));
   EXPECT_NEAR(usual_point_noise(small), 0.15 * drift, 1e-12);
+  EXPECT_EQ(usual_run_noise(small), usual_point_noise(small));
 }
 
 }  // namespace

@@ -279,7 +279,8 @@ TEST(AdaptedSigma, CoversUnseenDevicesOfANormalPopulation) {
     const AdaptedBias adapted =
         adapted_bias(population, kTemperatureInput,
                      selected(own, own.temperature == 10.0), {});
-    const BiasSigma sigma = adapted_sigma(population, adapted.deviation, {});
+    const BiasSigma sigma =
+        adapted_sigma(population, adapted.deviation, PointNoise{}.bias);
     const ArrayXd error =
         own.bias -
         bias_curve(population, adapted.mean).predict(own.temperature);
@@ -390,7 +391,7 @@ TEST(AdaptedSigma, CountsTheOtherWayHalfOfTheTime) {
   population.hysteresis = Eigen::MatrixXd::Constant(
       20, population.grid(), 0.5 * std::sqrt(0.2 * 0.2 + 2.0 * 0.03 * 0.03));
   const ArrayXd deviation = ArrayXd::Constant(population.grid(), 0.4);
-  const BiasSigma sigma = adapted_sigma(population, deviation, {0.03, 0.01});
+  const BiasSigma sigma = adapted_sigma(population, deviation, 0.03);
   EXPECT_NEAR(sigma.at(10.0, 0.0, 0.0),
               std::sqrt(0.2 * 0.2 + 2.0 * 0.03 * 0.03 + 0.5 * 0.2 * 0.2),
               1e-12);
@@ -401,7 +402,7 @@ TEST(AdaptedSigma, AddsTheTurnOnOfTwoRunsOutsideTheFactor) {
       kTemperatureInput, parabolas(20, 6, every_five_kelvins()), 5.0);
   population.sigma = AdaptationSigma{0.5, SigmaTerm{0.2, 300.0}, {}, 30, 1.5};
   const ArrayXd deviation = ArrayXd::Constant(population.grid(), 0.4);
-  const BiasSigma sigma = adapted_sigma(population, deviation, {0.03, 0.01});
+  const BiasSigma sigma = adapted_sigma(population, deviation, 0.03);
   EXPECT_NEAR(sigma.at(10.0, 0.0, 0.0),
               std::sqrt(0.2 * 0.2 + 2.0 * 0.03 * 0.03), 1e-12);
   EXPECT_EQ(sigma.power_on, population.sigma->power_on);
