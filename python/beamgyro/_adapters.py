@@ -69,6 +69,7 @@ def _numbers(values: Any, what: str) -> np.ndarray[Any, Any]:
     if len(shape) == 2 and shape[1] == 1:
         values = values.reshape(-1) if hasattr(values, "reshape") else (
             np.asarray(values)[:, 0])
+    _arguments.require_unit(values, f"the answer of {what}", "degree/s")
     return _arguments.numbers(values, f"the answer of {what}")
 
 

@@ -214,14 +214,27 @@ def rate_of(data: Any, rate_Hz: float) -> float:
     return rate_Hz
 
 
+def spelled(unit: Optional[str]) -> Optional[str]:
+    """Return a unit as the program spells it."""
+    return "deg/s" if unit == "degree/s" else unit
+
+
 def unit_of(data: Any, unit: Optional[str]) -> str:
     """Return the unit of samples, which an array of xarray may state."""
-    units = [unit, getattr(data, "attrs", {}).get("units")]
-    given, stated = ["deg/s" if one == "degree/s" else one for one in units]
+    given = spelled(unit)
+    stated = spelled(getattr(data, "attrs", {}).get("units"))
     if None not in (given, stated) and given != stated:
         raise ValueError(f"unit {unit!r}: the array states {stated!r}; "
                          "expected that one, or no unit")
     return str(given or stated or "deg/s")
+
+
+def require_unit(data: Any, name: str, expected: str) -> None:
+    """Refuse an array of xarray that states another unit."""
+    stated = getattr(data, "attrs", {}).get("units", expected)
+    if spelled(stated) != spelled(expected):
+        raise ValueError(f"{name}: the array states the unit {stated!r}; "
+                         f"expected {expected}, or none")
 
 
 # Factor and offset to degC, as docs/reference/recording.md has them.

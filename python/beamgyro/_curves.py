@@ -156,7 +156,7 @@ def curve_figures(curves: Union[xr.Dataset, xr.DataArray], *,
     Args:
         curves: what `characterise` returns of a campaign, or an array over
             ``device`` and ``temperature`` in deg/s, with the temperatures as
-            its coordinate.
+            its coordinate, in degC unless they state another unit.
         range_degC: the temperatures that count; all without.
         zero_at_degC: each curve counts less its value there.
         round_deg_per_s: values count at the nearest multiple of it, as read
@@ -174,8 +174,11 @@ def curve_figures(curves: Union[xr.Dataset, xr.DataArray], *,
     array = array.transpose("device", "temperature")
     units = (array["device"].values if "device" in array.coords
              else np.arange(array.sizes["device"]))
+    _arguments.require_unit(array, "curves", "degree/s")
+    temperature = array["temperature"]
     return CurveFiguresResult(*_core.curve_figures(
-        _arguments.numbers(array["temperature"], "temperature"),
+        _arguments.in_degC(_arguments.numbers(temperature, "temperature"),
+                           temperature, "temperature"),
         _arguments.numbers(array.values.ravel(), "curves"),
         [_arguments.whole(one, "device") for one in units.tolist()],
         _treatment(range_degC, zero_at_degC, round_deg_per_s),
@@ -197,6 +200,9 @@ def area_metric(sample: npt.ArrayLike, other: npt.ArrayLike, *,
     """
     values = _arguments.numbers(sample, "sample")
     others = _arguments.numbers(other, "other")
+    stated = getattr(sample, "attrs", {}).get("units")
+    if stated is not None:
+        _arguments.require_unit(other, "other", stated)
     if shares is None:
         return _core.area_metric(values, others)
     return _core.area_metric_of_table(

@@ -81,6 +81,7 @@ class Estimator:
                 these do not suffice.
         """
         columns = self._columns_of(X)
+        _arguments.require_unit(y, "y", "degree/s")
         bias = _arguments.numbers(y, "y")
         if len(bias) != len(columns["time"]):
             raise ValueError(f"y: holds {len(bias)} biases; expected "

@@ -26,6 +26,9 @@ Truth = _core.Truth
 
 _INPUTS = ("rate", "cross_rate_x", "cross_rate_y", "acceleration_x",
            "acceleration_y", "acceleration_z", "ambient", "powered")
+# Those that an array of xarray has to state, if it states one.
+_UNITS = {**dict.fromkeys(_INPUTS[:3], "degree/s"),
+          **dict.fromkeys(_INPUTS[3:6], "m/s2")}
 
 
 class Gyro:
@@ -203,6 +206,8 @@ def _arrays(inputs: Mapping[str, Series], count: Optional[int]
         if name not in _INPUTS:
             raise ValueError(f"input {_checks.shown(name)}: is none; expected "
                              f"one of {', '.join(_INPUTS)}")
+        if name in _UNITS:
+            _arguments.require_unit(value, name, _UNITS[name])
         try:
             array = np.asarray(value, dtype=np.float64)
         except (TypeError, ValueError) as error:
@@ -210,7 +215,8 @@ def _arrays(inputs: Mapping[str, Series], count: Optional[int]
         if array.ndim > 1:
             raise ValueError(f"{name} has {array.ndim} dimensions; expected "
                              "one")
-        arrays[name] = array
+        arrays[name] = (_arguments.in_degC(array, value, name)
+                        if name == "ambient" else array)
     lengths = {name: len(values) for name, values in arrays.items()
                if values.ndim == 1}
     if count is None:
