@@ -90,7 +90,7 @@ std::string teaches(const CardFacts& facts) {
   if (has_variable(facts, "true_rate"))
     text +=
         "- How the bias of devices of this population follows temperature and "
-        "the other measured\n  signals, within the temperatures above: the "
+        "the other measured\n  signals, within the temperatures below: the "
         "true rate is stored.\n";
   if (facts.head.devices > 1 && !facts.parameters.empty())
     text +=
@@ -109,7 +109,7 @@ std::string does_not_teach(const CardFacts& facts) {
       "simulator leaves out is\n  missing from all of them. A compensator "
       "trained here needs a test on real units.\n"
       "- Devices outside the drawn ranges, and temperatures outside those "
-      "above.\n";
+      "below.\n";
   if (std::ranges::all_of(facts.runs, is_at_rest))
     text +=
         "- Scale factor, linearity, or whether a compensator leaves rates "

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <memory>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -71,6 +72,13 @@ void settle(ConfigNode& node) {
   for (ConfigNode& child : node.children) settle(child);
 }
 
+// By its first line.
+bool looks_like_csv(std::string_view text) {
+  const std::string_view first = text.substr(0, text.find('\n'));
+  return first.find_first_of("=[#{<") == std::string_view::npos &&
+         first.find_first_of(",;\t") != std::string_view::npos;
+}
+
 }  // namespace
 
 ConfigDocument::ConfigDocument(std::shared_ptr<DocumentState> state)
@@ -101,9 +109,12 @@ ConfigDocument ConfigDocument::parse(std::string_view text,
   try {
     state->root = parse_toml(state->text);
   } catch (const TomlError& error) {
-    throw std::invalid_argument(
-        fmt::format("{}:{}:{}: not TOML: {}", state->name, error.position.line,
-                    error.position.column, error.what()));
+    throw std::invalid_argument(fmt::format(
+        "{}:{}:{}: not TOML: {}{}", state->name, error.position.line,
+        error.position.column, error.what(),
+        looks_like_csv(state->text)
+            ? "; the file looks like CSV, expected one of keys and values"
+            : ""));
   }
   state->file_root = std::make_shared<const ConfigNode>(state->root);
   insert_all(*state);

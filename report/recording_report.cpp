@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <string_view>
 #include <vector>
 
 #include "dataset/log/log_statistics.h"
@@ -147,6 +148,16 @@ std::string range_text(const Recording& recording, const char* column,
                      column, range.low, range.high, unit, range.smallest_step);
 }
 
+// The line of its history that says that values were changed, if there is one.
+std::string_view history_of_change(const Recording& recording) {
+  const std::string_view history = recording.history;
+  const std::size_t found = history.find("changed after ");
+  if (found == std::string_view::npos) return {};
+  const std::size_t newline = history.rfind('\n', found);
+  const std::size_t begin = newline == std::string_view::npos ? 0 : newline + 1;
+  return history.substr(begin, history.find('\n', found) - begin);
+}
+
 }  // namespace
 
 std::string recording_report(const std::string& path,
@@ -167,6 +178,8 @@ std::string recording_report(const std::string& path,
   fmt::format_to(out, "\nfidelity {}, seed {}, made by beamgyro {} ({})\n",
                  recording.fidelity, recording.seed, recording.program_version,
                  recording.git_revision);
+  if (const std::string_view line = history_of_change(recording); !line.empty())
+    fmt::format_to(out, "{}\n", line);
   if (!recording.compensator.empty())
     fmt::format_to(out, "compensated by {} (SHA-256 {})\n",
                    recording.compensator, recording.compensator_sha256);

@@ -242,7 +242,7 @@ std::string sample_lines(const DeviceSample& sample, const StudyHead& head) {
       sample.merits.empty() ? 0 : sample.merits[0].design.a.size(),
       sample.factors.size(), sample.devices, head.grid.low, head.grid.high,
       head.seed);
-  if (sample.failures == 0) return text + "Every device works.\n";
+  if (sample.failures == 0) return text + "Every device was computed.\n";
   return text + fmt::format(
                     "{} devices ({:.3g} %) do not work; indices leave their "
                     "rows out, a yield counts them as bad.\nThe first of them: "

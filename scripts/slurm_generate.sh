@@ -114,6 +114,8 @@ while [ $# -gt 0 ]; do
   esac
 done
 command -v sbatch >/dev/null || fail "no sbatch here: not a Slurm cluster"
+sinfo --noheader >/dev/null 2>&1 ||
+  fail "no controller answers sinfo; expected a Slurm cluster that runs"
 self=$(realpath -- "${BASH_SOURCE[0]}")
 program=$(realpath -- "$(program_in "$(dirname -- "$self")/..")")
 [ -x "$program" ] || fail "$program is not there; build it with scripts/build.sh release"

@@ -32,6 +32,14 @@ TEST(TomlText, MalformedTextIsRejectedWithItsPlace) {
   }
 }
 
+TEST(TomlText, ALogIsTakenForOne) {
+  constexpr const char* kSaid = "; the file looks like CSV, expected";
+  EXPECT_TRUE(holds(rejection_of("t,w,T\n0,1,20\n"), kSaid));
+  EXPECT_TRUE(holds(rejection_of("\"t\"\t\"w\"\n0\t1\n"), kSaid));
+  EXPECT_FALSE(holds(rejection_of("x = [1, 2"), kSaid));
+  EXPECT_FALSE(holds(rejection_of("{\"a\": 1, \"b\": 2}"), kSaid));
+}
+
 TEST(TomlText, InputThatStopsThePackagedParserIsRejectedLikeAnyOther) {
   EXPECT_TRUE(rejection_of("[[[").starts_with("scn.toml:1:3: not TOML: "));
   EXPECT_TRUE(rejection_of("[`").starts_with("scn.toml:1:2: not TOML: "));

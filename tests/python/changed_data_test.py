@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 import beamgyro as bg
-from program import SCENARIOS
+from program import PROGRAM, SCENARIOS, ended
 
 CHANGED = "changed after simulation"
 CUBIC = SCENARIOS / "models/cubic.toml"
@@ -57,6 +57,7 @@ def test_what_was_changed_says_so_once(change, tmp_path):
         lines = file.attrs["history"].decode().splitlines()
     assert lines[0].endswith(": run")
     assert lines[1:] == [CHANGED]
+    assert f"\n{CHANGED}\n" in ended(PROGRAM, "info", tmp_path / "a.h5").stdout
     again = bg.open_recording(tmp_path / "a.h5")
     again.beamgyro.save(tmp_path / "b.h5")
     assert ((tmp_path / "a.h5").read_bytes()
