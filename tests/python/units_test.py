@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """An array of xarray that states a unit is read in it, or refused."""
 
+import copy
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -70,7 +72,7 @@ def test_steps_refuse_another_unit(gyro, name, unit):
 
 
 def test_steps_read_the_unit_of_the_ambient(gyro):
-    other = gyro.__copy__()
+    other = copy.copy(gyro)
     fahrenheit = other.advance({"ambient": stating([77.0, 86.0], "degF")}, 0.1)
     celsius = gyro.advance({"ambient": [25.0, 30.0]}, 0.1)
     np.testing.assert_allclose(fahrenheit.true_bias, celsius.true_bias,
