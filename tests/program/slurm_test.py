@@ -64,6 +64,19 @@ def free_port():
 
 # generate_test.py makes the tasks of a set in test.sh; nothing there runs
 # scripts/slurm_generate.sh.
+def test_without_a_controller_nothing_is_made(tmp_path):
+    for name in "sbatch", "sinfo":  # as they end where none answers
+        (tmp_path / name).write_text("#!/bin/sh\necho refused >&2\nexit 1\n")
+        (tmp_path / name).chmod(0o755)
+    path = f"{tmp_path}:{os.environ['PATH']}"
+    answer = ended(SCRIPT, SMALL, tmp_path / "set", allowed=[2], env={
+        **os.environ, "PATH": path, "BEAMGYRO": str(PROGRAM)})
+    assert answer.stderr.splitlines() == [
+        "slurm_generate: no controller answers sinfo; expected a Slurm cluster "
+        "that runs"]
+    assert not (tmp_path / "set").exists()
+
+
 @pytest.mark.deep
 @unittest.skipIf(why_not(), why_not())
 class Slurm(unittest.TestCase):

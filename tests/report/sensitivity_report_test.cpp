@@ -49,6 +49,12 @@ TEST(SensitivityReport, InteractionsHaveAnInterval) {
       holds(sensitivity_table(merit(0.98)), "interactions at most 5 %.\n"));
 }
 
+// Whether the loops of a device lock is said by a warning.
+TEST(SensitivityReport, SaysOfDevicesThatTheyWereComputed) {
+  const std::string text = sample_lines(DeviceSample{}, StudyHead{});
+  EXPECT_TRUE(holds(text, "\nEvery device was computed.\n")) << text;
+}
+
 TEST(SensitivityReport, ALongKeyStandsAboveItsRow) {
   MeritResult result = merit(0.71);
   const std::string key = "readout.offset_tc_deg_per_s_per_K + beam.side_m";
