@@ -16,12 +16,12 @@ lifelike ones up and down. Of --units further ones, of another seed, each is
 Scored are other runs of the unit with all noise, after another power-on: the
 soaks of a sweep once they have settled and before, the ramps of a run up and
 down, the first 15 min of a warm-up, and the settled soaks a year later, by rows
-of 60 s within the temperatures of training. The sweep rises; units that remember
-have one that falls as well, and both count: sigma does not know the way. Units that `train` names foreign to
-their population, of which sigma does not hold, are counted and left out.
-Printed are the share within the interval of 90 % and the mean square of
-residual over sigma, units of equal weight, and the medians of the rms left and
-of that of sigma.
+of 60 s within the temperatures of training. The sweep rises; units that
+remember have one that falls as well, and both count: sigma does not know the
+way. Units that `train` names foreign to their population, of which sigma does
+not hold, are counted and left out. Printed are the share within the interval of
+90 % and the mean square of residual over sigma, units of equal weight, and the
+medians of the rms left and of that of sigma.
 
 The recommended network of --recommended units is trained on the three runs with
 --cv run. Of it the shares of soaks and ramps and the normalised innovations

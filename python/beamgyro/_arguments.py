@@ -233,8 +233,8 @@ def require_unit(data: Any, name: str, expected: str) -> None:
     """Refuse an array of xarray that states another unit."""
     stated = getattr(data, "attrs", {}).get("units", expected)
     if spelled(stated) != spelled(expected):
-        raise ValueError(f"{name}: the array states the unit {stated!r}; "
-                         f"expected {expected}, or none")
+        raise ValueError(f"{name}: units {shown(stated)}; expected "
+                         f"{expected!r}")
 
 
 # Factor and offset to degC, as docs/reference/recording.md has them.

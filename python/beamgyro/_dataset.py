@@ -86,13 +86,6 @@ def _column_attributes(attributes: Mapping[Any, Any]) -> dict[str, str]:
     return found
 
 
-def _require_units(variable: Any, name: str, expected: str) -> None:
-    units = variable.attrs.get("units", expected)
-    if units != expected:
-        raise ValueError(f"{name}: units {_checks.shown(units)}; expected "
-                         f"{expected!r}")
-
-
 def warn_of_lost_units(dataset: xr.Dataset) -> None:
     """Warn of signals without units beside others that state theirs.
 
@@ -125,7 +118,7 @@ def recording_of(dataset: xr.Dataset, argument: str = "recording", *,
                          "times of its samples [s]")
     warn_of_lost_units(dataset)
     size = dataset.sizes["time"]
-    _require_units(dataset.variables["time"], "time", "s")
+    _arguments.require_unit(dataset.variables["time"], "time", "s")
     time = _arguments.seconds(dataset.variables["time"].values, "time")
     status = (_arguments.status(dataset.variables["status"].values)
               if "status" in dataset.variables

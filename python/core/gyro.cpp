@@ -40,7 +40,7 @@ Shown now(const Gyro& gyro) { return {gyro.now(), gyro.truth()}; }
 
 double number_of(const py::handle& given, const char* name) {
   if (PyFloat_Check(given.ptr())) return PyFloat_AS_DOUBLE(given.ptr());
-  if (py::hasattr(given, "attrs"))
+  if (!PyLong_Check(given.ptr()) && py::hasattr(given, "attrs"))
     throw std::invalid_argument(
         fmt::format("{}: is an array of xarray, whose unit a step does not "
                     "read; expected a number",

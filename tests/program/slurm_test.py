@@ -62,8 +62,6 @@ def free_port():
         return listener.getsockname()[1]
 
 
-# generate_test.py makes the tasks of a set in test.sh; nothing there runs
-# scripts/slurm_generate.sh.
 def test_without_a_controller_nothing_is_made(tmp_path):
     for name in "sbatch", "sinfo":  # as they end where none answers
         (tmp_path / name).write_text("#!/bin/sh\necho refused >&2\nexit 1\n")
@@ -77,6 +75,8 @@ def test_without_a_controller_nothing_is_made(tmp_path):
     assert not (tmp_path / "set").exists()
 
 
+# generate_test.py makes the tasks of a set in test.sh; nothing there submits
+# them by scripts/slurm_generate.sh.
 @pytest.mark.deep
 @unittest.skipIf(why_not(), why_not())
 class Slurm(unittest.TestCase):
